@@ -1,7 +1,7 @@
-//! Identification of all five degrees on three axes: ours beside what it replaces, in one run.
+//! Identification of all five degrees on three axes: our routine compared with what it replaces, in one run.
 //!
-//! First a table with p50 and p99 per tick and the ratios, then the same routines under divan; with `--ratios` only the ratios that
-//! `./dev bench` keeps.
+//! Prints a table with p50 and p99 per tick and the ratios, then runs the same routines under divan; with `--ratios` it
+//! prints only the ratios that `./dev bench` compares.
 
 #![expect(clippy::expect_used, reason = "a benchmark may stop at a setting out of range")]
 
@@ -18,7 +18,7 @@ use nima_core::{
 const RATE_HZ: f64 = 1000.0;
 const COLUMNS: usize = 16;
 const ROW: usize = COLUMNS + 1;
-/// The modes before matched rendering.
+/// The modes without matched rendering.
 const BEFORE: ModeSet = ModeSet::only(Mode::Anchored).with(Mode::Literal).with(Mode::Linear);
 
 fn sample(k: usize) -> Sample {
@@ -29,7 +29,7 @@ fn sample(k: usize) -> Sample {
     Sample { t_s: t, position_m: x, force_n: x.map(|x| 80.0 * x + 2000.0 * x * x + 0.1 * (400.0 * x).sin()) }
 }
 
-/// Rows of scaled features as the identifier makes them (here of analytic derivatives), right-hand side last.
+/// Rows of scaled features as the identifier forms them (here of analytic derivatives), right-hand side last.
 fn rows(count: usize) -> Vec<[Lanes; ROW]> {
     (0..count)
         .map(|k| {
@@ -48,7 +48,7 @@ fn rows(count: usize) -> Vec<[Lanes; ROW]> {
         .collect()
 }
 
-/// Times of `work` per call (us), sorted.
+/// Returns the sorted times of `work` per call, us.
 fn times_us(calls: usize, mut work: impl FnMut(usize)) -> Vec<f64> {
     let mut times: Vec<f64> = (0..calls)
         .map(|k| {
@@ -83,7 +83,7 @@ fn force(rows: &[[Lanes; ROW]], lane: usize) -> DVector<f64> {
     DVector::from_fn(rows.len(), |i, _| rows[i][COLUMNS][lane])
 }
 
-/// Five pseudo-inverses per axis by singular values, the textbook's way.
+/// Five pseudo-inverses per axis by singular values, the textbook method.
 fn svd(rows: &[[Lanes; ROW]]) -> f64 {
     let mut sum = 0.0;
     for lane in 0..3 {
@@ -96,7 +96,7 @@ fn svd(rows: &[[Lanes; ROW]]) -> f64 {
     sum
 }
 
-/// `M = F X^T (X X^T)^-1` for five degrees per axis, made afresh.
+/// `M = F X^T (X X^T)^-1` for five degrees per axis, computed from scratch.
 fn normal_equations(rows: &[[Lanes; ROW]]) -> f64 {
     let mut sum = 0.0;
     for lane in 0..3 {
@@ -110,20 +110,20 @@ fn normal_equations(rows: &[[Lanes; ROW]]) -> f64 {
     sum
 }
 
-/// One QR per axis and tick, made afresh (all five degrees follow from it).
+/// One QR per axis and tick, computed from scratch (all five degrees follow from it).
 fn fresh_qr(rows: &[[Lanes; ROW]]) -> f64 {
     (0..3).map(|lane| window_matrix(rows, lane, 0..ROW).qr().unpack_r()[(0, 0)]).sum()
 }
 
-/// Prints p50, p99 and the largest of sorted times; returns p50.
+/// Prints p50, p99 and the maximum of sorted times; returns p50.
 fn print(window: usize, name: &str, times: &[f64]) -> f64 {
     let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(times, share));
     println!("{window:>6}  {name:<44} {p50:>10.2} {p99:>10.2} {max:>10.2}");
     p50
 }
 
-/// The slowest tick's work relative to the median's: every tick of three blocks repeated, the least time of each taken, so
-/// that only its own work counts and not what interrupted it.
+/// Work of the slowest tick relative to the median. Every tick of three blocks is repeated and the minimum time of each
+/// is used, so that only its own work counts and not what interrupted it.
 fn worst_to_median(window: usize, rows: &[[Lanes; ROW]]) -> f64 {
     let ticks = 3 * window / 2;
     let mut least = vec![f64::INFINITY; ticks];
@@ -141,7 +141,7 @@ fn worst_to_median(window: usize, rows: &[[Lanes; ROW]]) -> f64 {
     percentile(&least, 1.0) / percentile(&least, 0.5)
 }
 
-/// Prints all figures for one length of the window; returns p50 of ours (us).
+/// Prints all results for one window length; returns p50 of our routine, us.
 fn table(window: usize) -> f64 {
     let rows = rows(4 * window + 20_000);
     let calls = 20_000;
@@ -189,7 +189,7 @@ fn table(window: usize) -> f64 {
     ours
 }
 
-/// What is done without us, as multiples of ours.
+/// Prints the costs of the alternatives as multiples of ours.
 fn ratios(window: usize) {
     let rows = rows(3 * window);
     let (mut slide, mut solution) = sliding(window / 2);

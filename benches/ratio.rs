@@ -1,13 +1,13 @@
-//! What something costs that a user would take instead, as a multiple of what ours costs. `./dev bench` compares these ratios with
-//! those of `benches/baseline.toml`: unlike times, they hardly depend on how fast the computer is, and not on who else uses it, because
+//! The cost of an alternative as a multiple of our cost. `./dev bench` compares these ratios with those in
+//! `benches/baseline.toml`. Unlike times, they hardly depend on the speed of the computer, nor on other users, because
 //! only the time counts in which the thread has a processor.
 
-/// The ratios alone were asked for.
+/// Whether only the ratios were requested.
 pub(crate) fn alone() -> bool {
     std::env::args().any(|argument| argument == "--ratios")
 }
 
-/// Ours and theirs in turn, so that what disturbs the one disturbs the other; prints the median of the rounds.
+/// Runs ours and theirs in turn, so that a disturbance affects both; prints the median of the rounds.
 pub(crate) fn tell(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut()) {
     const ROUND_S: f64 = 0.02;
     const ROUNDS: usize = 25;
@@ -18,7 +18,7 @@ pub(crate) fn tell(name: &str, mut ours: impl FnMut(), mut theirs: impl FnMut())
     println!("ratio {name} {:.4}", ratios[ROUNDS / 2]);
 }
 
-/// How many calls fill this time, at least one; the caches are warm afterwards.
+/// Returns how many calls fill this time, at least one. Warms the caches.
 fn calls(round_s: f64, work: &mut impl FnMut()) -> usize {
     let mut calls = 1;
     while time_s(calls, work) * (calls as f64) < round_s && calls < 1 << 20 {
@@ -27,16 +27,16 @@ fn calls(round_s: f64, work: &mut impl FnMut()) -> usize {
     calls
 }
 
-/// Mean time of a call, s.
+/// Returns the mean time of a call, s.
 fn time_s(calls: usize, work: &mut impl FnMut()) -> f64 {
     let start_s = processor_s();
     (0..calls).for_each(|_| work());
     (processor_s() - start_s) / calls as f64
 }
 
-/// For how long this thread has had a processor, s.
+/// Returns how long this thread has had a processor, s.
 #[cfg(unix)]
-#[expect(unsafe_code, reason = "the standard library does not tell it")]
+#[expect(unsafe_code, reason = "the standard library does not report it")]
 fn processor_s() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: a structure of the right type that lives through the call.
@@ -44,7 +44,7 @@ fn processor_s() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Elsewhere all time counts.
+/// On other systems all time counts.
 #[cfg(not(unix))]
 fn processor_s() -> f64 {
     static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);

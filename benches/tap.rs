@@ -1,6 +1,7 @@
-//! What the tap of a recording costs a tick of two arm pairs, while another thread writes the journal: time and allocations.
+//! Cost of recording a tick of two arm pairs, while another thread writes the journal: time and allocations.
 //!
-//! `./dev bench`. Once one tick after the other, once at the pace of the real loop, where the caches have grown cold.
+//! `./dev bench`. Runs once with one tick after the other, and once at the pace of the real loop, where the caches have
+//! gone cold.
 #![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
 #[path = "../tests/allocation/counting.rs"]

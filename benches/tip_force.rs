@@ -1,8 +1,9 @@
-//! The tip-force network's size against accuracy and time, on sessions it never saw; and beside what a user would use instead.
+//! Size of the tip-force network against accuracy and time, on sessions that it was not trained on, and compared with a
+//! general matrix library.
 //!
-//! `./dev bench` prints one row per size: errors against the truth of the simulated trocar, answers without contact, time of one
-//! answer, time of training 30000 rows. Below it the same network as products of dynamic matrices. With `--ratios`
-//! only the ratio of the two, which `./dev bench` keeps.
+//! `./dev bench` prints one row per size: errors against the simulated trocar's true force, predictions without
+//! contact, time of one prediction, time of training on 30000 rows. Below it the same network as products of dynamic
+//! matrices. With `--ratios` it prints only the ratio of the two, which `./dev bench` compares.
 #![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
 mod ratio;
@@ -15,7 +16,7 @@ use nima_study::validation::isolation::{ROWS, Reached, Sessions};
 
 const SIZES: [&[usize]; 7] = [&[8], &[16], &[32], &[16, 16], &[32, 32], &[64, 64], &[128, 128]];
 
-/// The same arithmetic with a library of matrices as a multiple of ours, which tells its doubt too.
+/// The same arithmetic with a matrix library as a multiple of ours, although ours also computes the uncertainty.
 fn ratios() {
     let sessions = Sessions::record(1, ROWS, FeatureSettings::default()).unwrap();
     let settings = TrainingSettings { epochs: Some(1), ..TrainingSettings::default() };
@@ -72,7 +73,7 @@ fn matrices() -> impl FnMut() {
     }
 }
 
-/// Their median time, microseconds.
+/// Returns their median time, microseconds.
 fn matrices_us() -> f64 {
     let mut work = matrices();
     let mut times: Vec<f64> = (0..2000)

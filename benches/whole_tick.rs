@@ -1,4 +1,4 @@
-//! The whole tick of two arm pairs, all stages, without devices, simulation and queues: time and allocations.
+//! The whole tick of two arm pairs with all stages, without devices, simulation and queues: time and allocations.
 //!
 //! `./dev bench`. The bimanual scene is recorded once with the loop's own outputs and replayed into loops of each mode.
 #![expect(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
@@ -59,7 +59,7 @@ fn main() {
         }
         let allocations = calls() - before;
         let engaged = control.pairs().all(|pair| pair.state() == LoopState::Engaged);
-        assert!(engaged, "{mode}: the replay is no engagement");
+        assert!(engaged, "{mode}: the replay did not engage");
         times_us.sort_by(f64::total_cmp);
         let at = |share: f64| times_us[(share * (TICKS - 1) as f64) as usize];
         println!(

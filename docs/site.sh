@@ -14,17 +14,20 @@ docs() {
     timed cargo install --locked --quiet --version "$mdbook_version" --no-default-features --features search --root "$folder/tools" mdbook
     tool=$folder/tools/bin/mdbook
   }
-  rm -rf "$book" && mkdir -p "$book/src"
+  rm -rf "$book" && mkdir -p "$book/src/reference"
   cp docs/book.toml "$book/"
   cp docs/*.md docs/*.png docs/*.svg "$book/src/"
+  cp docs/reference/*.md "$book/src/reference/"
   for page in README ARCHITECTURE CONTRIBUTING CHANGELOG; do
     sed -E 's#\]\(docs/#](#g' "$page.md" >"$book/src/${page,,}.md"
   done
+  # An old entry of the changelog names a page of its time.
+  sed -E -i 's#\[([^]]*)\]\([a-z-]+\.md[^)]*\)#\1#g' "$book/src/changelog.md"
   # mdBook would make an index of a page called README.
   mv "$book/src/readme.md" "$book/src/first-minute.md"
   sed -E -i 's#\]\((\.\./)?README\.md#](first-minute.md#g; s#\]\((\.\./)?(ARCHITECTURE|CONTRIBUTING|CHANGELOG)\.md#](\L\2.md#g' "$book"/src/*.md
-  # Files of the source are named, not shown.
-  sed -E -i 's#\[([^]]*)\]\((\.\./)?(config|src|ui|tests|assets|python)/[^)]*\)#\1#g' "$book"/src/*.md
+  # Files of the source, results and decisions are named, not shown.
+  sed -E -i 's#\[([^]]*)\]\((\.\./)?(config|src|ui|tests|assets|python|results|decisions)/[^)]*\)#\1#g' "$book"/src/*.md
   "$tool" build "$book" --dest-dir "$PWD/$folder/site"
   python3 tests/site_links.py "$folder/site"
   say "the site: $folder/site/index.html"

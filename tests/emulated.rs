@@ -29,7 +29,7 @@ pub const DEVICES: [&str; 11] = [
     "pedal",
 ];
 
-/// A port that is free for TCP and UDP.
+/// Returns a port that is free for TCP and UDP.
 fn free_port() -> u16 {
     loop {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -40,7 +40,7 @@ fn free_port() -> u16 {
     }
 }
 
-/// The built-in rig on free ports and in a folder of its own.
+/// The built-in rig on free ports and in its own folder.
 pub fn elsewhere(folder: &Path) -> Settings {
     provide_handles();
     let mut devices = RigConfig::load("emulated").unwrap().devices.unwrap();
@@ -71,7 +71,7 @@ pub fn elsewhere(folder: &Path) -> Settings {
     devices
 }
 
-/// The built-in rig as a file in which the devices stand at these places.
+/// The built-in rig as a file with the devices at these addresses.
 pub fn rig_file(devices: &Settings) -> RigFile {
     let mut file = RigFile::of("emulated").unwrap();
     for side in Side::ALL {
@@ -96,7 +96,7 @@ pub fn rig_file(devices: &Settings) -> RigFile {
     file
 }
 
-/// The same with its sensors at the tips, where they feel the tissue alone and need no calibration.
+/// The same with its sensors at the tips, where they measure only the tissue and need no calibration.
 pub fn at_tip(folder: &Path) -> Settings {
     let mut devices = elsewhere(folder);
     for set in [&mut devices.right, &mut devices.left].into_iter().flatten() {
@@ -105,17 +105,17 @@ pub fn at_tip(folder: &Path) -> Settings {
     devices
 }
 
-/// Only the right arm of that: handle, arm, sensor and servos.
+/// Only its right arm: handle, arm, sensor and servos.
 pub fn right_arm(folder: &Path) -> Settings {
     Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..at_tip(folder) }
 }
 
-/// Starts the emulated devices of that rig, in the scene of two arms: its pegs are where each arm reaches.
+/// Starts the emulated devices of that rig, in the scene of two arms, whose pegs are within reach of each arm.
 pub fn started(devices: &Settings) -> EmulatedRig {
     started_in(&Scene::load("bimanual").unwrap(), devices)
 }
 
-/// The same in another scene.
+/// Starts the emulated devices in another scene.
 pub fn started_in(scene: &Scene, devices: &Settings) -> EmulatedRig {
     EmulatedRig::start(
         devices,

@@ -1,4 +1,4 @@
-//! A gravity calibration for tests, recorded as a technician would.
+//! A gravity calibration for tests, recorded like a technician's.
 
 use nima_core::calibration::gravity::{GravityRecord, GravitySession, SessionSettings};
 use nima_machine::{

@@ -12,14 +12,52 @@ walk() {
   live
 }
 
-# What takes minutes and is judged or only printed: figures that the docs quote, and a thousand killed writers of a session.
+# Experiments of the program and, unless some are named, tests that take minutes and print figures: ./dev figures [STUDY...]
 figures() {
   need "${build_packages[@]}" || exit 1
   need_cargo
   as_the_tests_build
+  studies "$@"
+  [ $# -eq 0 ] || return 0
   timed cargo test --locked --workspace --no-fail-fast --lib --test machine --test session -- --ignored --nocapture --test-threads 1 --skip figures_of_scrubbing \
     figures_of_ how_long_ measure_rate all_fifteen a_thousand_killed in_the_whole_grid
   timed cargo test --locked --workspace --test wires -- --ignored --nocapture --test-threads 1 figures_of_a_minute
+}
+
+# Name of the table in docs/results, and the experiment that prints it.
+study_commands='baselines: baselines
+effects: effects
+faults: faults
+hands: hands
+network: network --clock perfect
+network-matched: network --clock perfect --mode matched --own-motion-handle
+passivity: passivity --clock perfect
+release: release
+stability: stability --ticks 10000000
+stability-map: stability-map
+timing: timing
+validation: validation --clock perfect
+validation-paper: validation --paper'
+
+# Writes docs/results/NAME.md for each experiment, or for the named ones. A missed aim is a result, not a failure.
+studies() {
+  local nima=${CARGO_TARGET_DIR:-target}/debug/nima folder name command arguments
+  folder=$(mktemp -d)
+  timed cargo build --locked -p nima-console
+  while IFS=: read -r name command; do
+    [ $# -eq 0 ] || [[ " $* " == *" $name "* ]] || continue
+    read -ra arguments <<<"$command"
+    timed "$nima" study "${arguments[@]}" --out "$folder/$name" >"$folder/$name.txt" </dev/null || say "exit status $?: nima study$command"
+    {
+      printf '# Results: %s\n\n' "$name"
+      # shellcheck disable=SC2016
+      printf -- '- Command: `nima study%s`, by `./dev figures %s` (development build)\n' "$command" "$name"
+      printf -- '- Commit: %s\n- Machine: %s processors, %s\n' "$(git describe --always --dirty)" "$(nproc)" "$(uname -srm)"
+      printf -- '- Date: %s\n\n' "$(date +%F)"
+      cat "$folder/$name"/*.md 2>/dev/null || sed -e '1i ```text' -e '$a ```' "$folder/$name.txt"
+    } >"docs/results/$name.md"
+  done <<<"$study_commands"
+  rm -r "$folder"
 }
 
 # Sessions of every scene, recorded here, must replay to the last bit on other processors: an older one of this kind (without fused

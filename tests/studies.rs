@@ -1,8 +1,8 @@
-//! A study of short trials, and the search for what a blind one must not tell.
+//! A study of short trials, and the search for text that a blind study must not reveal.
 
 use std::{fs, path::Path};
 
-/// Two conditions whose words and numbers stand nowhere else.
+/// Two conditions whose words and numbers occur nowhere else.
 pub const BLIND: &str = "
 [[conditions]]
 name = 'Zebra'
@@ -14,7 +14,7 @@ name = 'Wildebeest'
 no_force = true
 ";
 
-/// A study file in which the right hand touches tissue for so many seconds a trial.
+/// A study file in which the right hand touches tissue for this many seconds per trial.
 pub fn study_file(head: &str, seconds: f64, conditions: &str) -> String {
     format!(
         "name = 'Touching'\nscene = 'peg_transfer'\nprimary = 'mean_force_n_right'\n{head}\n\
@@ -25,7 +25,7 @@ pub fn study_file(head: &str, seconds: f64, conditions: &str) -> String {
 /// Names and bytes of all files under a folder.
 ///
 /// # Panics
-/// If one cannot be read.
+/// If a file cannot be read.
 pub fn everything(folder: &Path) -> String {
     let mut all = String::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -40,7 +40,7 @@ pub fn everything(folder: &Path) -> String {
     all
 }
 
-/// Which of these words, in small letters, a text has.
+/// Returns the words, in lower case, that occur in a text.
 pub fn found_in<'a>(text: &str, words: &[&'a str]) -> Vec<&'a str> {
     let text = text.to_lowercase();
     words.iter().copied().filter(|word| text.contains(word)).collect()

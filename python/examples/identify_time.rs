@@ -1,4 +1,5 @@
-//! The time of an identification in Rust, which `tests/speed.py` compares with that from Python: the same motion, the same options.
+//! Time of an identification in Rust, which `tests/speed.py` compares with that from Python: the same motion and
+//! options.
 //!
 //! `cargo run --release --example identify_time -- SAMPLES RUNS` prints the seconds of each run.
 

@@ -1,4 +1,4 @@
-//! Arrays of numpy: looked at where they are, and given away without a copy.
+//! Arrays of numpy: read in place, and returned without a copy.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::{
@@ -12,14 +12,14 @@ use crate::errors::value;
 /// Largest deviation of a quaternion from unit length that counts as rounding, as in files.
 const UNIT_TOLERANCE: f64 = 0.01;
 
-/// One array for each axis, wherever its numbers lie.
+/// One array for each axis, with any memory layout.
 pub(crate) struct Axes<'a> {
     name: &'static str,
     columns: Vec<ArrayView1<'a, f64>>,
 }
 
 impl<'a> Axes<'a> {
-    /// All of the same length and finite.
+    /// Checks that all have the same length and are finite.
     pub(crate) fn new(name: &'static str, arrays: &'a [PyReadonlyArray1<'_, f64>]) -> PyResult<Self> {
         let columns: Vec<_> = arrays.iter().map(PyReadonlyArray1::as_array).collect();
         let this = Self { name, columns };
@@ -45,7 +45,7 @@ impl<'a> Axes<'a> {
         self.columns.first().map_or(0, ArrayView1::len)
     }
 
-    /// The vector of a row; zero beyond its axes.
+    /// Returns the vector of a row; zero beyond its axes.
     pub(crate) fn at(&self, row: usize) -> Vector3<f64> {
         let mut vector = Vector3::zeros();
         for (lane, column) in self.columns.iter().enumerate() {
@@ -54,7 +54,7 @@ impl<'a> Axes<'a> {
         vector
     }
 
-    /// The same shape as another one.
+    /// Checks that both have the same shape.
     pub(crate) fn fits(&self, other: &Self) -> PyResult<()> {
         if (self.count(), self.rows()) == (other.count(), other.rows()) {
             return Ok(());
@@ -75,7 +75,7 @@ fn not_finite(name: &str, row: usize, number: f64) -> pyo3::PyErr {
     value(format_args!("{name}, row {row}: {number} is not a finite number; remove or repair the row"))
 }
 
-/// Times (s) that rise.
+/// Checks that times (s) rise.
 pub(crate) fn rising(times_s: &ArrayView1<'_, f64>) -> PyResult<()> {
     for (row, now_s) in times_s.iter().enumerate() {
         if !now_s.is_finite() {
@@ -91,7 +91,7 @@ pub(crate) fn rising(times_s: &ArrayView1<'_, f64>) -> PyResult<()> {
     Ok(())
 }
 
-/// A table with this many columns, all finite; with `rows` rows if that is known.
+/// Checks a table with this many columns, all finite, and with `rows` rows if given.
 pub(crate) fn table<'a>(
     name: &str,
     array: &'a PyReadonlyArray2<'_, f64>,
@@ -112,12 +112,12 @@ pub(crate) fn table<'a>(
     Ok(view)
 }
 
-/// The vector in a row.
+/// Returns the vector in a row.
 pub(crate) fn vector(table: &ArrayView2<'_, f64>, row: usize) -> Vector3<f64> {
     Vector3::from_fn(|axis, _| table[[row, axis]])
 }
 
-/// The rotation (w, x, y, z) in a row; normalised.
+/// Returns the rotation (w, x, y, z) in a row, normalised.
 pub(crate) fn rotation(name: &str, table: &ArrayView2<'_, f64>, row: usize) -> PyResult<UnitQuaternion<f64>> {
     let part = |column: usize| table[[row, column]];
     let quaternion = Quaternion::new(part(0), part(1), part(2), part(3));
@@ -130,13 +130,13 @@ pub(crate) fn rotation(name: &str, table: &ArrayView2<'_, f64>, row: usize) -> P
     Ok(UnitQuaternion::from_quaternion(quaternion))
 }
 
-/// Numbers as an array of two dimensions, row by row.
+/// Returns numbers as a two-dimensional array, row by row.
 pub(crate) fn given2<T: Element>(py: Python<'_>, numbers: Vec<T>, columns: usize) -> PyResult<Bound<'_, PyArray2<T>>> {
     let rows = numbers.len() / columns.max(1);
     PyArray1::from_vec(py, numbers).reshape([rows, columns])
 }
 
-/// The same with three dimensions.
+/// Returns numbers as a three-dimensional array.
 pub(crate) fn given3<T: Element>(
     py: Python<'_>,
     numbers: Vec<T>,

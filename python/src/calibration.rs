@@ -1,4 +1,4 @@
-//! Fits of gravity and of the correspondence, and removing the weight.
+//! Fits of gravity and of the correspondence, and removal of the weight.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -16,12 +16,12 @@ use crate::{
     errors::{guarded, value},
 };
 
-/// A table for Python.
+/// A table returned to Python.
 type Given<'py> = Bound<'py, PyArray2<f64>>;
-/// A table that may be left out.
+/// An optional table.
 type Optional<'py> = Option<PyReadonlyArray2<'py, f64>>;
 
-/// The table, if it is given.
+/// Returns the table, if it is given.
 fn optional<'a>(
     name: &str,
     array: &'a Optional<'_>,
@@ -31,7 +31,7 @@ fn optional<'a>(
     array.as_ref().map(|array| table(name, array, columns, Some(rows))).transpose()
 }
 
-/// The orientation of each pose, from one of both sources.
+/// Returns the orientation of each pose, from either source.
 fn orientations(
     rows: usize,
     accelerations: Option<&ArrayView2<'_, f64>>,
@@ -93,7 +93,7 @@ pub(crate) fn fit_gravity(
     })
 }
 
-/// Takes weight and bias out of readings.
+/// Subtracts weight and bias from readings.
 #[pyfunction]
 pub(crate) fn remove_gravity<'py>(
     py: Python<'py>,
@@ -104,7 +104,7 @@ pub(crate) fn remove_gravity<'py>(
     world_from_sensor_wxyz: Optional<'py>,
 ) -> PyResult<(Given<'py>, Option<Given<'py>>)> {
     let model: GravityModel =
-        serde_json::from_str(model).map_err(|error| value(format_args!("model is no gravity model: {error}")))?;
+        serde_json::from_str(model).map_err(|error| value(format_args!("model is not a gravity model: {error}")))?;
     if let Some(fault) = model.fault() {
         return Err(value(format_args!("model: {fault}")));
     }

@@ -1,4 +1,4 @@
-//! Errors of the library as Python's: one line each.
+//! Converts the library's errors to Python's, one line each.
 
 use std::{
     fmt::Display,
@@ -12,12 +12,12 @@ use pyo3::{
     exceptions::{PyOSError, PyRuntimeError, PyValueError},
 };
 
-/// A value that cannot be used.
+/// An invalid value.
 pub(crate) fn value(error: impl Display) -> PyErr {
     PyValueError::new_err(one_line(&error))
 }
 
-/// What is wrong with a file: the system's error where it cannot be opened, else what it contains.
+/// An error of a file: an `OSError` if it cannot be opened, otherwise about its contents.
 pub(crate) fn of_file(path: &Path, error: impl Display) -> PyErr {
     let is_readable = File::open(path).is_ok() && path.is_file();
     if is_readable { value(error) } else { PyOSError::new_err(one_line(&error)) }
@@ -27,7 +27,7 @@ fn one_line(error: &impl Display) -> String {
     error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Does `work`; a panic, which is a mistake of ours, is an ordinary error too.
+/// Runs `work`; a panic, which is a bug of ours, becomes an ordinary error too.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     let broken =
         |_| Err(PyRuntimeError::new_err("a mistake inside nima; please report it with the call that led to it"));

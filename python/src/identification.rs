@@ -22,18 +22,18 @@ use crate::{
     errors::{guarded, of_file, value},
 };
 
-/// What messages call arrays: `recording ... has 3 samples`.
+/// Name of the arrays in messages: `recording ... has 3 samples`.
 const NAME: &str = "of these arrays";
 /// Columns of the anchored model.
 const ANCHORED_COLUMNS: usize = 9;
 
-/// Every mode, by its name.
+/// Returns every mode by its name.
 #[pyfunction]
 pub(crate) fn modes() -> Vec<&'static str> {
     Mode::ALL.into_iter().chain(Mode::BASELINES).map(Mode::name).collect()
 }
 
-/// The rate of these times, Hz, as `nima identify` finds it.
+/// Returns the rate of these times, Hz, as `nima identify` computes it.
 #[pyfunction]
 pub(crate) fn rate_of(times_s: PyReadonlyArray1<'_, f64>) -> PyResult<f64> {
     let times_s = times_s.as_array();
@@ -42,7 +42,7 @@ pub(crate) fn rate_of(times_s: PyReadonlyArray1<'_, f64>) -> PyResult<f64> {
         .ok_or_else(|| value(format_args!("times_s has {} samples, 3 are needed; record longer", times_s.len())))
 }
 
-/// The rows of a replay, number by number.
+/// The rows of a replay, column by column.
 struct Rows {
     axes: usize,
     forces_n: Vec<f64>,
@@ -53,7 +53,7 @@ struct Rows {
     parcels: Option<Parcels>,
 }
 
-/// What crosses the link, number by number.
+/// The data that cross the link, column by column.
 #[derive(Default)]
 struct Parcels {
     literal: Paper,
@@ -90,7 +90,7 @@ impl Rows {
 
     fn push(&mut self, row: &Row, parcel: &Parcel) {
         for (forces_n, force_n) in [(&mut self.forces_n, &row.rendered), (&mut self.held_n, &row.held)] {
-            // Not a zero: nothing had come yet, or there is nothing valid.
+            // NaN rather than zero: nothing had arrived yet, or the force is invalid.
             forces_n.extend((0..self.axes).map(|lane| force_n.map_or(f64::NAN, |force_n| force_n[lane])));
         }
         self.degrees.push(row.degree as u8);
@@ -158,12 +158,12 @@ impl Paper {
     }
 }
 
-/// A word of a rig file.
+/// Parses a keyword of a rig file.
 fn word<T: DeserializeOwned>(keyword: &str, text: &str) -> PyResult<T> {
     serde_json::from_value(text.into()).map_err(|error| value(format_args!("{keyword}: {error}")))
 }
 
-/// Replays motion and force that lie in arrays, one for each axis; see `nima.identify`.
+/// Replays motion and force from arrays, one for each axis; see `nima.identify`.
 #[pyfunction]
 #[pyo3(signature = (positions_m, forces_n, *, times_s, rate_hz, leader_positions_m, axes, mode, delay_s, window_s, max_degree, cross_talk, reading, choice, constant, ridge, parcels))]
 pub(crate) fn identify<'py>(
@@ -231,7 +231,7 @@ pub(crate) fn identify<'py>(
     Ok(result)
 }
 
-/// The motion and force of a table or of an arm of a session; see `nima.read_recording`.
+/// Returns motion and force of a table or of an arm of a session; see `nima.read_recording`.
 #[pyfunction]
 pub(crate) fn read_recording<'py>(
     py: Python<'py>,
@@ -281,7 +281,7 @@ pub(crate) fn read_recording<'py>(
     Ok(result)
 }
 
-/// Full name, column and factor of each quantity that is mapped.
+/// Returns full name, column and factor of each mapped quantity.
 #[pyfunction]
 pub(crate) fn parse_map(map: Vec<String>) -> PyResult<Vec<(&'static str, String, f64)>> {
     let mapping = Mapping::parse(&map).map_err(value)?;
@@ -289,7 +289,7 @@ pub(crate) fn parse_map(map: Vec<String>) -> PyResult<Vec<(&'static str, String,
     Ok(mapping.sources().map(of).collect())
 }
 
-/// An arm, as it is named on the command line.
+/// Parses an arm's name as used on the command line.
 pub(crate) fn side(text: &str) -> PyResult<Side> {
     let known = Side::ALL.into_iter().find(|side| side.word() == text);
     known.ok_or_else(|| value(format_args!("arm is {text:?}; give \"right\" or \"left\"")))

@@ -1,7 +1,7 @@
-//! The Python package `nima`: what its functions in Python call.
+//! The Python package `nima`: the native functions called by its Python code.
 //!
-//! Arrays come and go without a copy where they are float64. Nothing in here decides anything: every function calls the one that the
-//! command line calls. The lock of the interpreter is released while something is computed.
+//! float64 arrays are passed in both directions without a copy. There is no logic here: every function calls the one
+//! used by the command line. The interpreter lock is released during computations.
 
 mod arrays;
 mod calibration;
@@ -11,7 +11,7 @@ mod identification;
 mod session;
 mod tip_force;
 
-/// What `nima` imports.
+/// The native module imported by `nima`.
 #[pyo3::pymodule(name = "_nima")]
 mod native {
     #[pymodule_export]

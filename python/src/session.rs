@@ -48,7 +48,7 @@ struct Columns {
     states: Vec<&'static str>,
 }
 
-/// Names of the vectors of a tick.
+/// Names of a tick's vectors.
 const VECTORS: [&str; 6] = ["tip_m", "leader_m", "measured_n", "delayed_n", "asked_n", "rendered_n"];
 
 impl Columns {
@@ -64,7 +64,7 @@ impl Columns {
 }
 
 impl Session {
-    /// A stretch from and to (s since the session began), ns since 1970; half open.
+    /// Converts a range (s since the session began) to ns since 1970; half open.
     fn stretch(&self, from_s: Option<f64>, to_s: Option<f64>) -> PyResult<Range<u64>> {
         let time_ns = |name: &str, seconds: f64| {
             if !(0.0..=1e9).contains(&seconds) {
@@ -116,31 +116,31 @@ impl Session {
         self.reader.library()
     }
 
-    /// What is wrong with the file, one line each.
+    /// Faults of the file, one line each.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.reader.notes().to_vec()
     }
 
-    /// The arms that are plotted.
+    /// The plotted arms.
     #[getter]
     fn arms(&self) -> Vec<&'static str> {
         plotted::arms(&self.reader).into_iter().map(Side::word).collect()
     }
 
-    /// When it began, ns since 1970 (UTC).
+    /// Begin of the session, ns since 1970 (UTC).
     #[getter]
     fn begin_ns(&self) -> u64 {
         self.begin_ns
     }
 
-    /// Its end, s since it began.
+    /// End of the session, s since its begin.
     #[getter]
     fn end_s(&self) -> f64 {
         self.seconds(self.reader.statistics().times_ns.1)
     }
 
-    /// Topic, schema, and number of messages where the file says so.
+    /// Topic, schema, and number of messages if the file states it.
     #[getter]
     fn channels(&self) -> Vec<(String, String, Option<u64>)> {
         let of = |channel: &nima_recording::session::Channel| {
@@ -166,7 +166,7 @@ impl Session {
         Ok(PyBytes::new(py, &data))
     }
 
-    /// The tables of the file, by their names.
+    /// The tables of the file, by name.
     #[getter]
     fn metadata(&self) -> PyResult<BTreeMap<String, BTreeMap<String, String>>> {
         let tables = self.reader.metadata().map_err(|error| self.wrong(error))?;
@@ -177,7 +177,7 @@ impl Session {
         Ok(all)
     }
 
-    /// What is plotted of an arm in every tick.
+    /// The plotted signals of an arm in every tick.
     #[pyo3(signature = (arm, from_s, to_s))]
     fn ticks<'py>(
         &self,
@@ -257,7 +257,7 @@ impl Session {
         Ok(result)
     }
 
-    /// The lines of the log: time (s), level, part, words.
+    /// The lines of the log: time (s), level, part, text.
     #[pyo3(signature = (from_s, to_s))]
     fn events(
         &self,

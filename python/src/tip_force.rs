@@ -24,7 +24,7 @@ pub(crate) struct TipForceModel {
 
 #[pymethods]
 impl TipForceModel {
-    /// Reads a file that `nima train tip-force` wrote.
+    /// Reads a file written by `nima train tip-force`.
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let load = || py.detach(|| load_model(&path).map_err(|error| of_file(&path, error)));
@@ -43,7 +43,7 @@ impl TipForceModel {
         self.model.outputs.clone()
     }
 
-    /// Where it comes from, as JSON.
+    /// Its origin, as JSON.
     #[getter]
     fn origin(&self) -> PyResult<String> {
         serde_json::to_string(&self.model.origin).map_err(value)
@@ -81,7 +81,7 @@ impl TipForceModel {
         Ok(result)
     }
 
-    /// The force at the tip sample by sample, as the loop makes it.
+    /// The force at the tip sample by sample, as computed by the loop.
     #[pyo3(signature = (times_s, forces_n, torques_nm, world_from_sensor_wxyz, insertion_m, fallback))]
     fn infer<'py>(
         &self,

@@ -82,10 +82,10 @@ def test_poor_poses_are_a_verdict_and_impossible_ones_an_error():
         (lambda: nima.fit_gravity(forces_n * np.nan, world_from_sensor_wxyz=wxyz), "forces_n, row 0: NaN"),
         (lambda: nima.fit_gravity(forces_n, world_from_sensor_wxyz=wxyz, model="magic"), 'model is "magic"; give one of physical'),
         (lambda: nima.fit_gravity(forces_n, accelerations_m_s2=wxyz[:, 1:] * 0.0), "the accelerometer reads 0.00"),
-        (lambda: nima.fit_gravity(forces_n[:0], world_from_sensor_wxyz=wxyz[:0]), "there are no poses"),
+        (lambda: nima.fit_gravity(forces_n[:0], world_from_sensor_wxyz=wxyz[:0]), "no poses were given"),
         (lambda: nima.fit_correspondence(forces_n, forces_n[1:]), r"tissue_forces_n has the shape \(7, 3\)"),
-        (lambda: nima.fit_correspondence(forces_n * 1e9, forces_n), "is no force of a push"),
-        (lambda: nima.remove_gravity({"a": 1}, forces_n, world_from_sensor_wxyz=wxyz), "model is no gravity model"),
+        (lambda: nima.fit_correspondence(forces_n * 1e9, forces_n), "is not a plausible force of a push"),
+        (lambda: nima.remove_gravity({"a": 1}, forces_n, world_from_sensor_wxyz=wxyz), "model is not a gravity model"),
     ]:
         with pytest.raises(ValueError, match=words) as caught:
             call()

@@ -206,7 +206,7 @@ def test_jaws_take_a_fourth_number():
         ({"rig": "no_such"}, "simulated"),
         ({"rig": "emulated"}, "has devices; give a simulated one"),
         ({"scene": "gravity"}, "cannot be engaged"),
-        ({"mode": "smith"}, 'no mode is called "smith"'),
+        ({"mode": "smith"}, 'unknown mode "smith"'),
         ({"mode": "best", "control": "rendered_force"}, "leave it away"),
         ({"control": "thought"}, "handle_position"),
         ({"delay_s": 3.0}, "delay_s is 3"),

@@ -1,8 +1,9 @@
-//! Plots as SVG, shared by evaluations, reports and studies: points and lines over linear or logarithmic axes, with a legend.
+//! Plots as SVG, shared by evaluations, reports and studies: points and lines on linear or logarithmic axes, with a
+//! legend.
 //!
-//! Written here instead of using a plotting library: the result is one text file that uses the reader's own sans-serif
-//! font. A value that is not finite (or not positive on a logarithmic axis) is left out; one beyond the axis is drawn
-//! at its edge.
+//! Not a plotting library, because the result must be one text file that uses the reader's own sans-serif font. Values
+//! that are not finite (or not positive on a logarithmic axis) are left out; values beyond the axis are drawn at its
+//! edge.
 
 use std::fmt::Write as _;
 
@@ -16,63 +17,51 @@ const LEGEND_LINE: f64 = 18.0;
 /// Colours that most colour-blind readers can distinguish (Okabe and Ito); the markers differ too.
 pub const COLOURS: [&str; 7] = ["#d55e00", "#e69f00", "#cc79a7", "#009e73", "#0072b2", "#56b4e9", "#000000"];
 
-/// One axis: what it shows, with its unit, and its range.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// Name and unit, e.g. `delay (ms)`.
     pub title: String,
-    /// Smallest and largest value shown.
     pub range: [f64; 2],
-    /// Whether the scale is logarithmic; then the range must be positive.
+    /// A logarithmic scale requires a positive range.
     pub logarithmic: bool,
 }
 
-/// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// A marker at every point.
     Points,
-    /// Straight lines between points, and markers.
     Line,
-    /// A thin dashed line without markers.
     Dashed,
 }
 
-/// Points of one kind.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Text in the legend; no entry if empty.
+    /// Text in the legend; empty for no entry.
     pub name: String,
-    /// Index into [`COLOURS`] (and the marker's shape).
+    /// Index into [`COLOURS`]; also selects the marker's shape.
     pub colour: usize,
-    /// Markers, a line with markers, or a dashed line.
     pub style: Style,
     /// `(x, y)`.
     pub points: Vec<[f64; 2]>,
 }
 
-/// One plot.
 #[derive(Clone, Debug)]
 pub struct Chart {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    /// Drawn in this order, later ones on top.
+    /// Drawn in this order, later series on top.
     pub series: Vec<Series>,
 }
 
 impl Axis {
-    /// A logarithmic axis.
     pub fn log(title: &str, from: f64, to: f64) -> Self {
         Self { title: title.into(), range: [from, to], logarithmic: true }
     }
 
-    /// A linear axis.
     pub fn linear(title: &str, from: f64, to: f64) -> Self {
         Self { title: title.into(), range: [from, to], logarithmic: false }
     }
 
-    /// An axis that covers all `values` that can be shown on it, with a small margin.
+    /// Returns an axis that covers all `values` that it can show, with a small margin.
     pub fn around(title: &str, values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
         let map = |value: f64| if logarithmic { value.log10() } else { value };
         let mapped = values.map(map).filter(|value| value.is_finite());
@@ -83,16 +72,15 @@ impl Axis {
         Self { title: title.into(), range: [back(low - room), back(high + room)], logarithmic }
     }
 
-    /// Position of `value` on the axis, 0 to 1; `None` if it cannot be shown.
+    /// Returns the position of `value` on the axis, 0 to 1; `None` if it cannot be shown.
     fn place(&self, value: f64) -> Option<f64> {
         let map = |value: f64| if self.logarithmic { value.log10() } else { value };
         let [from, to] = self.range.map(map);
         let place = (map(value) - from) / (to - from);
-        // The logarithm of zero is minus infinity, which is drawn at the lower edge. NaN cannot be drawn.
+        // The logarithm of zero is minus infinity and is drawn at the lower edge. NaN cannot be drawn.
         (!place.is_nan() && (place.is_finite() || value == 0.0)).then(|| place.clamp(0.0, 1.0))
     }
 
-    /// Values to label on the axis.
     fn ticks(&self) -> Vec<(f64, String)> {
         let [from, to] = self.range;
         if self.logarithmic {
@@ -135,7 +123,7 @@ fn power_of_ten(power: i32) -> String {
     }
 }
 
-/// All charts side by side, as one SVG document.
+/// Returns all charts side by side as one SVG document.
 pub fn svg(charts: &[Chart]) -> String {
     let legend = charts.iter().map(legend_lines).max().unwrap_or(0) as f64 * LEGEND_LINE;
     let width = WIDTH * charts.len().max(1) as f64;
@@ -224,7 +212,7 @@ fn draw(out: &mut String, chart: &Chart, series: &Series) {
     }
 }
 
-/// A circle, square, triangle, diamond or cross, depending on the series' colour index.
+/// Draws a circle, square, triangle, diamond or cross, depending on the series' colour index.
 fn marker(out: &mut String, series: &Series, x: f64, y: f64) {
     let path = match series.colour % 5 {
         0 => "m-3 -3l6 6m0 -6l-6 6",
@@ -249,7 +237,7 @@ fn legend_lines(chart: &Chart) -> usize {
     named(chart).count().div_ceil(2)
 }
 
-/// The legend, in two columns below the plot.
+/// Draws the legend in two columns below the plot.
 fn legend_of(out: &mut String, chart: &Chart) {
     for (i, series) in named(chart).enumerate() {
         let x = LEFT + (i % 2) as f64 * (WIDTH - LEFT - RIGHT) / 2.0;

@@ -1,19 +1,19 @@
 //! Named frames and the rotations between them.
 //!
-//! | name | frame |
-//! |---|---|
-//! | `world` | base of the follower arm, z up: the workspace frame of this program |
-//! | `s1` | force-torque sensor at the wrist; its z axis runs along the instrument's shaft towards the tip |
-//! | `shaft` | `s1` turned about the shaft, so that it does not depend on the shaft's roll ([`world_from_shaft`]) |
-//! | `imu` | inertial unit inside the wrist sensor |
-//! | `m` | optical marker on the base of the instrument |
-//! | `c` | tracker camera |
-//! | `s2` | force sensor under the tissue |
-//! | `base`, `flange` | base and flange of an arm |
-//! | `table` | origin and plane that were touched with the tip; z up |
-//! | `view` | the endoscope's picture: x right, y down, z into the picture |
-//! | `n` | optical marker on the endoscope |
-//! | `leader` | the haptic device, from its base |
+//!  name | frame |
+//! ---|---|
+//!  `world` | base of the follower arm, z up: the workspace frame of this program |
+//!  `s1` | force-torque sensor at the wrist; its z axis runs along the instrument's shaft towards the tip |
+//!  `shaft` | `s1` turned about the shaft, so that it does not depend on the shaft's roll ([`world_from_shaft`]) |
+//!  `imu` | inertial unit inside the wrist sensor |
+//!  `m` | optical marker on the base of the instrument |
+//!  `c` | tracker camera |
+//!  `s2` | force sensor under the tissue |
+//!  `base`, `flange` | base and flange of an arm |
+//!  `table` | origin and plane that were touched with the tip; z up |
+//!  `view` | the endoscope image: x right, y down, z into the image |
+//!  `n` | optical marker on the endoscope |
+//!  `leader` | the haptic device, from its base |
 //!
 //! A rotation named `target_from_source` transforms a vector from the source frame to the target frame, so that
 //! adjacent names match in a chain: `s1_from_s2 = s1_from_world * world_from_m * m_from_c * c_from_s2`.
@@ -23,7 +23,8 @@ use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 /// Standard gravity, m/s^2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Rotation by roll about x, then pitch about y, then yaw about z of the fixed frame (degrees): `Rz Ry Rx`, as in the paper.
+/// Returns the rotation by roll about x, then pitch about y, then yaw about z of the fixed frame (degrees): `Rz Ry Rx`,
+/// as in the paper.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -38,17 +39,18 @@ pub fn from_roll_pitch_yaw_deg(angles_deg: &Vector3<f64>) -> UnitQuaternion<f64>
     UnitQuaternion::from_euler_angles(roll, pitch, yaw)
 }
 
-/// Roll, pitch and yaw (degrees) of a rotation: the inverse of [`from_roll_pitch_yaw_deg`].
+/// Returns roll, pitch and yaw (degrees) of a rotation: the inverse of [`from_roll_pitch_yaw_deg`].
 pub fn to_roll_pitch_yaw_deg(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let (roll, pitch, yaw) = Rotation3::from(*rotation).euler_angles();
     Vector3::new(roll.to_degrees(), pitch.to_degrees(), yaw.to_degrees())
 }
 
-/// The frame `shaft` of a wrist sensor: z along the instrument's shaft as in `s1`, and otherwise the shortest rotation from the frame of
-/// a shaft that points straight down with its x axis along `world`'s. Undefined for a shaft that points straight up, where x stays.
+/// Returns the frame `shaft` of a wrist sensor: z along the instrument's shaft as in `s1`, and otherwise the shortest
+/// rotation from the frame of a shaft that points straight down with its x axis along `world`'s. Undefined for a shaft
+/// that points straight up, where x stays.
 ///
-/// The posture of a redundant arm rolls the sensor about the shaft while the instrument does the same work. What the tissue and the body
-/// wall do to the instrument does not roll with it.
+/// The posture of a redundant arm rolls the sensor about the shaft while the instrument does the same work. What the
+/// tissue and the body wall do to the instrument does not roll with it.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -74,13 +76,12 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// The same wrench in a frame with the same origin.
+    /// Returns the same wrench in another frame with the same origin.
     #[must_use]
     pub fn turned(&self, target_from_source: &UnitQuaternion<f64>) -> Self {
         Self { force_n: target_from_source * self.force_n, torque_nm: target_from_source * self.torque_nm }
     }
 
-    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         self.force_n.iter().chain(self.torque_nm.iter()).all(|x| x.is_finite())
     }
@@ -106,7 +107,6 @@ pub struct WristSample {
 }
 
 impl WristSample {
-    /// A sample that contains only a wrench.
     pub const fn of(raw: Wrench) -> Self {
         Self {
             raw,
@@ -119,12 +119,11 @@ impl WristSample {
         }
     }
 
-    /// The known part of the correspondence chain, `s1_from_c = s1_from_world * world_from_m * m_from_c`.
+    /// Returns the known part of the correspondence chain, `s1_from_c = s1_from_world * world_from_m * m_from_c`.
     pub fn s1_from_c(&self) -> Option<UnitQuaternion<f64>> {
         Some(self.world_from_s1?.inverse() * self.world_from_m? * self.m_from_c?)
     }
 
-    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         let vectors = [self.acceleration_m_s2, self.tissue_n];
         let rotations = [self.world_from_s1, self.world_from_m, self.m_from_c];

@@ -1,4 +1,5 @@
-//! Limits of what an operator, a rig file or a command may choose. Sliders, checks and texts take them from here.
+//! Limits of the settings that an operator, a rig file or a command may choose. Sliders, checks and texts use these
+//! values.
 
 use std::fmt;
 
@@ -13,11 +14,9 @@ use std::fmt;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Smallest value.
     pub min: f64,
-    /// Largest value.
     pub max: f64,
-    /// Unit of both; empty for a number without one.
+    /// Unit of both limits; empty for a plain number.
     pub unit: &'static str,
 }
 
@@ -26,12 +25,12 @@ impl Limits {
         Self { min, max, unit }
     }
 
-    /// Whether the value may be chosen; one that is not a number may not.
+    /// Returns whether the value is within the limits; NaN is not.
     pub fn contains(&self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
     }
 
-    /// The same in another unit, which is `size` of this one.
+    /// Returns the same limits in another unit, which is `size` of this one.
     #[must_use]
     pub fn per(&self, size: f64, unit: &'static str) -> Self {
         Self { min: self.min / size, max: self.max / size, unit }
@@ -46,7 +45,6 @@ impl fmt::Display for Limits {
     }
 }
 
-/// Rate of the control loop.
 pub const RATE_HZ: Limits = Limits::new(20.0, 10_000.0, "Hz");
 
 /// Feedback gain that any command or file may choose.
@@ -54,37 +52,36 @@ pub const GAIN: Limits = Limits::new(0.0, 1.0, "");
 /// Feedback gain after the operator's second, deliberate action.
 pub const GAIN_ABOVE_ONE: Limits = Limits::new(0.0, 3.0, "");
 
-/// Programmed one-way delay of the link. The loop's rings are made for the longest.
+/// Programmed one-way delay of the link. The loop's ring buffers have room for the maximum.
 pub const DELAY_S: Limits = Limits::new(0.0, 1.0, "s");
-/// The same on the slider of the window. Rig files, studies and replays go further; on the slider that would halve the resolution where a
-/// hand can work (the paper uses 0.3 s).
+/// Delay on the slider of the window. Rig files, studies and replays allow more; on the slider that would halve the
+/// resolution in the range where a person can still work (the paper uses 0.3 s).
 pub const SLIDER_DELAY_S: Limits = Limits::new(0.0, 0.5, "s");
 
 /// Speed of the hand below which no force is rendered.
 pub const DEAD_BAND_M_S: Limits = Limits::new(0.0, 0.1, "m/s");
-/// The same on the slider of the window, for the resolution around the 1 mm/s of the paper.
+/// Dead band on the slider of the window, for a fine resolution around the paper's 1 mm/s.
 pub const SLIDER_DEAD_BAND_M_S: Limits = Limits::new(0.0, 0.01, "m/s");
 
-/// Force ceiling of a rig file that names none, N.
+/// Force ceiling of a rig file that does not set one, N: the ceiling of the studies in `docs/release.md`.
 pub const USUAL_CEILING_N: f64 = 4.0;
-/// Highest force ceiling of a rig file, N: what the strongest handle with a driver of its own (omega.7) gives.
+/// Highest force ceiling of a rig file, N: the force of the strongest handle that has a built-in driver (omega.7).
 pub const MAX_CEILING_N: f64 = OMEGA7_FORCE_N;
-/// Largest force of an omega.7, N.
+/// Maximum force of an omega.7, N (chai3d's device table).
 pub const OMEGA7_FORCE_N: f64 = 12.0;
-/// Largest force of its gripper, N.
+/// Maximum force of the omega.7's gripper, N (chai3d's device table).
 pub const OMEGA7_GRIPPER_N: f64 = 8.0;
 
 /// Distance between the two lenses of an endoscope.
 pub const BASELINE_M: Limits = Limits::new(0.000_5, 0.05, "m");
-/// First radial distortion of an endoscope's lens (`k1`).
 pub const DISTORTION: Limits = Limits::new(-2.0, 2.0, "");
 
-/// Distance of the tip per distance of the hand.
+/// Travel of the tip per travel of the hand.
 pub const SCALE: Limits = Limits::new(0.01, 5.0, "");
 
 /// Samples in the window of the identification.
 pub const WINDOW_SAMPLES: Limits = Limits::new(10.0, 10_000.0, "samples");
-/// Force that may count as none, at which the identification rests.
+/// Force that counts as no force, below which the identification pauses.
 pub const REST_N: Limits = Limits::new(0.0, 1.0, "N");
-/// Ridge of the identification.
+/// Ridge parameter of the identification.
 pub const RIDGE: Limits = Limits::new(0.0, 1e6, "");

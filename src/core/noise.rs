@@ -17,17 +17,16 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// The sequence of this seed.
     pub fn new(seed: u64) -> Self {
         Self { rng: fastrand::Rng::with_seed(seed), spare: None }
     }
 
-    /// Uniform in 0..1.
+    /// Returns a number that is uniform in 0..1.
     pub fn uniform(&mut self) -> f64 {
         self.rng.f64()
     }
 
-    /// Standard normal (Box-Muller, both values used).
+    /// Returns a standard normal number (Box-Muller, both values used).
     pub fn gaussian(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;

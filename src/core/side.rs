@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Number of sides.
 pub const SIDES: usize = 2;
 
 /// A side, from the surgeon's point of view. A rig with one arm pair has the right one.
@@ -12,10 +11,8 @@ pub const SIDES: usize = 2;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// For the right hand.
     #[default]
     Right,
-    /// For the left hand.
     Left,
 }
 
@@ -23,16 +20,14 @@ impl Side {
     /// Both sides, in the order of every array of sides.
     pub const ALL: [Self; SIDES] = [Self::Right, Self::Left];
 
-    /// Both sides as a table shows them. Also the order in which the physics takes the instruments: another order would change the last
-    /// bits of its sums.
+    /// Both sides as a table shows them. The physics processes the instruments in this order too: another order would
+    /// change the last bits of its sums.
     pub const LEFT_TO_RIGHT: [Self; SIDES] = [Self::Left, Self::Right];
 
-    /// Index in an array of sides.
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// The other one.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -41,14 +36,14 @@ impl Side {
         }
     }
 
-    /// An array with this value on this side and nothing on the other.
+    /// Returns an array with this value on this side and `None` on the other.
     pub fn alone<T>(self, value: T) -> [Option<T>; SIDES] {
         let mut values = [None, None];
         values[self.index()] = Some(value);
         values
     }
 
-    /// Its name in files and in English text.
+    /// Returns the name used in files and in English text.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Right => "right",
@@ -78,7 +73,7 @@ mod tests {
     fn there_is_no_other_type_of_this_name() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let all = ["src", "ui", "tests"].into_iter().flat_map(|folder| sources(&root.join(folder)));
-        // The ROS 2 bridge is a workspace of its own.
+        // The ROS 2 bridge is a separate workspace.
         let others = all.filter(|path| !path.ends_with("core/side.rs") && !path.ends_with("ros2/src/topics.rs"));
         let doubled: Vec<_> = others.filter(|path| fs::read_to_string(path).unwrap().contains("enum Side ")).collect();
         assert_eq!(doubled, [""; 0].map(PathBuf::from), "use nima_core::Side");

@@ -3,7 +3,7 @@
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
-/// Longest duration that is distinguished, ns (10 s); longer ones count as this.
+/// Longest duration that the histogram resolves, ns (10 s). Longer durations count as this one.
 const LONGEST_NS: u64 = 10_000_000_000;
 
 /// A histogram of durations with three significant digits.
@@ -32,12 +32,10 @@ pub struct Quantiles {
     pub max: f64,
 }
 
-/// One bar of a histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bar {
-    /// Its upper limit, us.
+    /// Upper limit, us.
     pub to_us: f64,
-    /// Number of durations in it.
     pub count: u64,
 }
 
@@ -48,7 +46,7 @@ impl Default for Percentiles {
 }
 
 impl Percentiles {
-    /// An empty histogram; allocates everything that it needs.
+    /// Creates an empty histogram and allocates all of its memory.
     pub fn new() -> Self {
         // The constants are valid bounds; the fallback only avoids an error type in the signature.
         let histogram = Histogram::new_with_bounds(1, LONGEST_NS, 3)
@@ -57,23 +55,23 @@ impl Percentiles {
         Self { histogram }
     }
 
-    /// Records one duration, s. A negative or non-finite one counts as zero.
+    /// Records one duration, s. A negative or non-finite duration counts as zero.
     pub fn record(&mut self, seconds: f64) {
         self.histogram.saturating_record((seconds * 1e9).max(0.0) as u64);
     }
 
-    /// Number of durations recorded.
     pub fn count(&self) -> u64 {
         self.histogram.len()
     }
 
-    /// The quantiles of all durations so far, microseconds.
+    /// Returns the quantiles of all durations so far, microseconds.
     pub fn quantiles(&self) -> Quantiles {
         let at = |q| self.histogram.value_at_quantile(q) as f64 * 1e-3;
         Quantiles { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: self.histogram.max() as f64 * 1e-3 }
     }
 
-    /// Counts in bars that double in width, from 1 us to the largest duration; empty if nothing was recorded.
+    /// Returns the counts in bars that double in width, from 1 us to the largest duration; empty if nothing was
+    /// recorded.
     pub fn histogram(&self) -> Vec<Bar> {
         let bars = self.histogram.iter_log(1000, 2.0);
         let bars = bars.map(|bar| Bar {
@@ -83,7 +81,7 @@ impl Percentiles {
         if self.count() == 0 { Vec::new() } else { bars.collect() }
     }
 
-    /// Counts in `buckets` equal steps of `step_us`; the last one includes everything longer.
+    /// Returns the counts in `buckets` equal steps of `step_us`; the last one includes everything longer.
     pub fn bars(&self, step_us: f64, buckets: usize) -> Vec<u64> {
         let mut bars = vec![0; buckets.max(1)];
         for value in self.histogram.iter_recorded() {

@@ -6,15 +6,10 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "loss")]
 pub enum Loss {
-    /// The port or the connection was closed.
     Disconnected,
-    /// Nothing valid arrived for too long.
     Silent,
-    /// Too many damaged frames in a row.
     Corrupt,
-    /// Numbers that are not finite or not possible.
     Implausible,
-    /// The device itself reports a fault.
     Device {
         /// The manufacturer's code.
         code: u32,
@@ -22,7 +17,7 @@ pub enum Loss {
 }
 
 impl Loss {
-    /// The cause, for a screen.
+    /// Returns the cause, for a screen.
     pub const fn cause(self) -> &'static str {
         match self {
             Self::Disconnected => "the connection is gone",
@@ -34,37 +29,33 @@ impl Loss {
     }
 }
 
-/// State of the connection to a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// Not opened.
     #[default]
     Closed,
     /// Being opened and configured, on another thread.
     Opening,
     /// Delivers readings. Connected does not mean engaged.
     Connected,
-    /// Has delivered readings, and does not now.
+    /// The device has delivered readings but does not any more.
     Lost(Loss),
 }
 
 /// State and counters of a device since it was opened. A reading is a complete, checked frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Health {
-    /// State of the connection.
     pub standing: Standing,
-    /// Readings accepted.
     pub readings: u64,
-    /// Readings that never arrived, found by the device's counter or clock.
+    /// Number of readings that never arrived, according to the device's counter or clock.
     pub lost: u64,
-    /// Frames refused because of their checksum or structure.
+    /// Number of frames refused because of their checksum or structure.
     pub damaged: u64,
-    /// Bytes skipped to find the beginning of a frame again.
+    /// Number of bytes skipped to find the beginning of a frame again.
     pub skipped_bytes: u64,
-    /// Readings that arrived too late, twice, or in the wrong order.
+    /// Number of readings that arrived too late, twice, or in the wrong order.
     pub out_of_order: u64,
-    /// Readings refused because of their status bits or numbers.
+    /// Number of readings refused because of their status bits or numbers.
     pub refused: u64,
     /// Arrival of the newest reading, s on the loop's clock.
     pub newest_s: Option<f64>,
@@ -80,16 +71,16 @@ pub struct Health {
     in_window: u32,
 }
 
-/// Averaging time of the rate, s.
+/// Averaging time of the rate, s: short enough to follow a change on the screen, long enough for 30 frames of a tracker
+/// at 60 Hz, so that the rate does not flicker.
 const RATE_WINDOW_S: f64 = 0.5;
 
 impl Health {
-    /// The health of a device that is being opened.
+    /// Returns the health of a device that is being opened.
     pub fn opening() -> Self {
         Self { standing: Standing::Opening, ..Self::default() }
     }
 
-    /// Counts an accepted reading that arrived at `now_s`.
     pub fn accept(&mut self, now_s: f64) {
         let begin_s = *self.window_s.get_or_insert(now_s);
         if now_s - begin_s >= RATE_WINDOW_S {
@@ -112,13 +103,13 @@ impl Health {
         newly
     }
 
-    /// Seconds since the newest reading; infinite before the first.
+    /// Returns the seconds since the newest reading; infinite before the first.
     pub fn age_s(&self, now_s: f64) -> f64 {
         self.newest_s.map_or(f64::INFINITY, |newest_s| now_s - newest_s)
     }
 }
 
-/// Outages of a slot; they are kept when the device is opened again.
+/// Outages of a slot; they are kept when the device is reopened.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outages {
     count: u64,
@@ -127,7 +118,7 @@ pub(super) struct Outages {
 }
 
 impl Outages {
-    /// Updates the outages from the present state of the device, and copies them into `health`.
+    /// Updates the outages from the current state of the device, and copies them into `health`.
     pub(super) fn follow(&mut self, health: &mut Health, now_s: f64) {
         if matches!(health.standing, Standing::Lost(_)) && self.since_s.is_none() {
             self.count += 1;
@@ -136,7 +127,7 @@ impl Outages {
         if let Some(since_s) = self.since_s {
             self.longest_s = self.longest_s.max(now_s - since_s);
         }
-        // A device that a person disconnects is not in an outage.
+        // A device that a person disconnects does not have an outage.
         if matches!(health.standing, Standing::Connected | Standing::Closed) {
             self.since_s = None;
         }
@@ -145,7 +136,6 @@ impl Outages {
     }
 }
 
-/// Identity that a device reports.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Identity {
     pub product: String,
@@ -153,7 +143,7 @@ pub struct Identity {
     pub firmware: String,
 }
 
-/// Whether two serial numbers are the same: `853`, `SN853` and `SN000853` are. An empty one is nobody's.
+/// Returns whether two serial numbers are equal: `853`, `SN853` and `SN000853` are. An empty number equals no other.
 pub fn same_serial(one: &str, other: &str) -> bool {
     let [one, other] = [one, other].map(|serial| serial.trim().trim_start_matches("SN").trim_start_matches('0'));
     !one.is_empty() && one == other

@@ -1,4 +1,4 @@
-//! The emergency lever of a device: makes it safe from another thread when the loop no longer runs.
+//! The emergency release of a device: makes the device safe from another thread when the loop no longer runs.
 
 use std::{
     fmt,
@@ -12,7 +12,7 @@ type Pull = Box<dyn FnMut() + Send>;
 pub struct Lever(Arc<Mutex<Option<Pull>>>);
 
 impl Lever {
-    /// Connects it to a device that was opened, replacing the previous one.
+    /// Connects the lever to an open device, replacing the previous one.
     pub fn attach(&self, pull: impl FnMut() + Send + 'static) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(pull));
     }

@@ -1,8 +1,8 @@
-//! Drivers of the devices: from the bytes on the wire to readings in SI units.
+//! Drivers of the devices: from the bytes on the connection to readings in SI units.
 //!
-//! Each driver has a folder of its own, with a codec without input and output, and a driver over a [`transport`] that
+//! Each driver has its own folder, with a codec without input and output, and a driver over a [`transport`] that
 //! neither waits nor allocates. Readings are in SI units in the device's own frame, with their time of arrival. This
-//! crate knows nothing of the rig to which a device belongs.
+//! crate does not depend on the rig to which a device belongs.
 
 pub mod bota;
 pub mod discovery;
@@ -40,39 +40,34 @@ pub use trouble::Trouble;
 ///
 /// The real-time thread owns it: [`poll`](Self::poll) must neither wait nor allocate.
 pub trait Device: Send {
-    /// Type of its readings.
     type Reading: Copy + Send;
 
     /// Handles everything that has arrived until `now_s` (loop time) and returns the newest reading since the last
-    /// call, if there is one. What is lost, damaged or refused is counted in [`Device::health`]; a device that is lost
-    /// stays lost until it is opened again.
+    /// call, if any. Lost, damaged and refused data are counted in [`Device::health`]; a lost device stays lost until
+    /// it is reopened.
     fn poll(&mut self, now_s: f64) -> Option<Stamped<Self::Reading>>;
 
-    /// How it is, and who it is.
     fn about(&self) -> (&Health, &Identity);
 
-    /// How it is.
     fn health(&self) -> &Health {
         self.about().0
     }
 
-    /// Who it is.
+    /// Returns the identity that the device reported.
     fn identity(&self) -> &Identity {
         self.about().1
     }
 }
 
-/// A request, made by a person, that a device in fault clears its faults.
+/// A person's request that a device in fault clears its faults.
 #[derive(Clone)]
 pub struct ClearFaults(std::sync::Arc<dyn Fn() + Send + Sync>);
 
 impl ClearFaults {
-    /// Carried out by calling this function.
     pub fn by(command: impl Fn() + Send + Sync + 'static) -> Self {
         Self(std::sync::Arc::new(command))
     }
 
-    /// Makes the request.
     pub fn command(&self) {
         (self.0)();
     }

@@ -7,7 +7,7 @@ use std::{
     os::fd::{AsRawFd, FromRawFd as _},
 };
 
-/// A second descriptor of an open line, whose reads and writes never wait.
+/// Returns a second descriptor of an open line, whose reads and writes never wait.
 ///
 /// # Errors
 /// If the descriptor cannot be duplicated.
@@ -27,13 +27,13 @@ pub fn bytes_of(port: &impl AsRawFd) -> io::Result<File> {
     }
 }
 
-/// Effective user id of this process.
 pub fn user_id() -> u32 {
     // SAFETY: no arguments, and it cannot fail.
     unsafe { libc::geteuid() }
 }
 
-/// Asks the port's driver to deliver bytes without delay; false if it cannot (a pseudo-terminal, another system).
+/// Requests that the port's driver deliver bytes without delay; returns false if it cannot (a pseudo-terminal, another
+/// system).
 #[cfg(target_os = "linux")]
 pub(super) fn ask_low_latency(port: &impl AsRawFd) -> bool {
     /// `struct serial_struct` of <linux/serial.h> is 72 bytes on 64-bit systems; its flags are the fifth 32-bit word.
@@ -53,13 +53,14 @@ pub(super) fn ask_low_latency(port: &impl AsRawFd) -> bool {
     }
 }
 
-/// Asks the port's driver to deliver bytes without delay; other systems have no such flag.
+/// Returns false, because other systems have no such flag.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn ask_low_latency(_: &impl AsRawFd) -> bool {
     false
 }
 
-/// Errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count them.
+/// Returns the errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count
+/// them.
 #[cfg(target_os = "linux")]
 pub(super) fn line_errors(port: &impl AsRawFd) -> Option<u32> {
     /// `struct serial_icounter_struct` of <linux/serial.h>: twenty 32-bit integers; after cts, dsr, rng, dcd, rx and tx come frame, overrun,
@@ -72,7 +73,7 @@ pub(super) fn line_errors(port: &impl AsRawFd) -> Option<u32> {
     answered.then(|| counts[6..10].iter().fold(0, |sum, count| u32::wrapping_add(sum, *count)))
 }
 
-/// Errors counted by the port's hardware; not available on other systems.
+/// Returns `None`, because other systems do not report these errors.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn line_errors(_: &impl AsRawFd) -> Option<u32> {
     None

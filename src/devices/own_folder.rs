@@ -1,13 +1,12 @@
-//! The folder in which this user's emulators create their sockets and terminals, and the permissions that it must have.
+//! The folder in which this user's emulators create their sockets and terminals, and its required permissions.
 //!
-//! Whoever may write in such a folder could replace a device, or redirect the emulators' files with a link. So the
-//! folder is created for this user alone, and one that another user owns or may write in is refused.
+//! Anyone who may write in such a folder could replace a device, or redirect the emulators' files with a link. The
+//! folder is therefore created for this user alone, and a folder that another user owns or may write in is refused.
 
 use std::path::PathBuf;
 
-/// Folder of emulated devices whose path in the rig file is relative: in the user's runtime folder or, if the system
-/// has none, a folder of this user among the temporary ones. This function neither creates nor checks it ([`prepare`]
-/// does).
+/// Returns the folder for relative paths of emulated devices: in the user's runtime folder or, if the system has none,
+/// a folder of this user among the temporary ones. The folder is neither created nor checked ([`prepare`] does that).
 pub fn runtime_folder() -> PathBuf {
     let given = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     match given.filter(|folder| folder.is_absolute() && is_own(folder)) {
@@ -34,7 +33,6 @@ mod unix {
 
     use crate::os::user_id;
 
-    /// Permission bits of group and others.
     const FOR_OTHERS: u32 = 0o077;
     /// Permission bit for writing by others; with the sticky bit they cannot remove each other's files.
     const WORLD_WRITABLE: u32 = 0o002;
@@ -44,7 +42,7 @@ mod unix {
         format!("nima-emulated-{}", user_id())
     }
 
-    /// Whether this user owns the folder and nobody else may enter it, as with a runtime folder.
+    /// Returns whether this user owns the folder and no other user may enter it, as for a runtime folder.
     pub(super) fn is_own(folder: &Path) -> bool {
         fs::symlink_metadata(folder)
             .is_ok_and(|there| there.is_dir() && there.uid() == user_id() && there.mode() & FOR_OTHERS == 0)
@@ -65,12 +63,14 @@ mod unix {
         let reason = if foreign(&link) || foreign(&there) {
             "belongs to another user"
         } else if there.mode() & (WORLD_WRITABLE | STICKY) == WORLD_WRITABLE {
-            "may be written by every user"
+            "is writable by every user"
         } else {
             return Ok(());
         };
-        let told =
-            format!("folder {} {reason}: remove it, or give the emulated devices another place", folder.display());
+        let told = format!(
+            "folder {} {reason}: remove it, or choose another folder for the emulated devices",
+            folder.display()
+        );
         Err(Error::new(ErrorKind::PermissionDenied, told))
     }
 
@@ -80,7 +80,7 @@ mod unix {
     /// I/O errors, for instance if the path is a link.
     pub fn lock_file(path: &Path) -> Result<File> {
         let refuse = |reason: &str| {
-            let told = format!("{} {reason}: remove it, or take another place", path.display());
+            let told = format!("{} {reason}: remove it, or choose another folder", path.display());
             Error::new(ErrorKind::AlreadyExists, told)
         };
         let mut options = OpenOptions::new();
@@ -92,7 +92,11 @@ mod unix {
             _ => Error::new(error.kind(), format!("{}: {error}", path.display())),
         })?;
         let there = file.metadata()?;
-        if there.is_file() && there.uid() == user_id() { Ok(file) } else { Err(refuse("is no emulator's")) }
+        if there.is_file() && there.uid() == user_id() {
+            Ok(file)
+        } else {
+            Err(refuse("does not belong to an emulator"))
+        }
     }
 }
 
@@ -110,7 +114,7 @@ fn fallback_name() -> String {
     "nima-emulated".to_owned()
 }
 
-/// Other systems have no such variable.
+/// Returns false, because other systems have no such variable.
 #[cfg(not(unix))]
 fn is_own(_: &std::path::Path) -> bool {
     false

@@ -12,7 +12,6 @@ use crate::{
     TrackerReading,
 };
 
-/// A haptic handle.
 pub trait Leader: Device<Reading = HandleReading> {
     /// Switches the force on or off. After switching on, the force is zero until it is set.
     fn switch_force(&mut self, on: bool);
@@ -21,7 +20,7 @@ pub trait Leader: Device<Reading = HandleReading> {
     /// off.
     fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64);
 
-    /// Whether the force is on, if the device has reported this since the last call.
+    /// Returns whether the force is on, if the device has reported a change since the last call.
     fn force_change(&mut self) -> Option<bool>;
 
     /// Connects `lever`, which switches the force off from another thread.
@@ -31,29 +30,26 @@ pub trait Leader: Device<Reading = HandleReading> {
 /// The arm that carries the instrument.
 pub trait Follower: Device<Reading = ArmReading> {
     /// Requests servoing, in which the arm follows [`Follower::aim`]; [`ArmReading::servoing`] becomes true when the
-    /// arm has changed to it.
+    /// arm has entered it.
     fn enter_servoing(&mut self);
 
-    /// Brakes the arm, then ends servoing.
     fn leave_servoing(&mut self);
 
-    /// Commanded joint angles, rad; valid only while servoing.
+    /// Returns the commanded joint angles, rad; valid only while servoing.
     fn command_rad(&self) -> [f64; ARM_JOINTS];
 
     /// Commands joint angles, rad: the next point of a path within the arm's limits. Returns false if they are refused;
-    /// the arm is then not where the path assumes it.
+    /// the arm then deviates from the path.
     fn aim(&mut self, target_rad: &[f64; ARM_JOINTS]) -> bool;
 
     /// Connects `lever`, which ends servoing from another thread.
     fn attach(&self, lever: &Lever);
 }
 
-/// A force-torque sensor.
 pub trait ForceSensor: Device<Reading = ForceReading> {}
 
 impl<D: Device<Reading = ForceReading>> ForceSensor for D {}
 
-/// An optical tracker.
 pub trait Tracker: Device<Reading = TrackerReading> {}
 
 impl<D: Device<Reading = TrackerReading>> Tracker for D {}

@@ -3,18 +3,17 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::Wrench;
 
-/// A reading with its times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stamped<T> {
-    /// Time on the device's own clock, s, unwrapped where its counter overflows; `None` if the device sends no time.
+    /// Time on the device's own clock, s, unwrapped across overflows of its counter; `None` if the device sends no
+    /// time.
     pub device_s: Option<f64>,
-    /// When it arrived, on the loop's clock, s.
+    /// Time of arrival on the loop's clock, s.
     pub arrival_s: f64,
-    /// The decoded reading.
     pub value: T,
 }
 
-/// Why a force reading must not be used for control.
+/// Reasons why a force reading must not be used for control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a bit of the device's own status word")]
 pub struct ForceStatus {
@@ -29,7 +28,7 @@ pub struct ForceStatus {
 }
 
 impl ForceStatus {
-    /// Whether the reading may be used for control.
+    /// Returns whether the reading may be used for control.
     pub const fn is_usable(self) -> bool {
         !self.invalid && !self.raw && !self.overrange
     }
@@ -38,7 +37,6 @@ impl ForceStatus {
 /// One reading of a force-torque sensor, in its own frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceReading {
-    /// Force and torque.
     pub wrench: Wrench,
     /// Accelerometer, m/s^2; at rest it points away from the ground (+g upwards).
     pub acceleration_m_s2: Option<Vector3<f64>>,
@@ -46,21 +44,19 @@ pub struct ForceReading {
     pub angular_velocity_rad_s: Option<Vector3<f64>>,
     /// Temperature of the sensor's electronics, degrees Celsius.
     pub temperature_c: f64,
-    /// Reasons why it must not be used.
     pub status: ForceStatus,
 }
 
 /// Number of joints of the follower arm.
 pub const ARM_JOINTS: usize = 7;
 
-/// One reading of an arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmReading {
     /// Joint angles, rad, unwrapped: continuous from reading to reading.
     pub joint_rad: [f64; ARM_JOINTS],
     pub joint_rad_s: [f64; ARM_JOINTS],
     pub joint_nm: [f64; ARM_JOINTS],
-    /// Whether it follows cyclic commands now.
+    /// Whether the arm follows cyclic commands now.
     pub servoing: bool,
 }
 
@@ -72,7 +68,6 @@ pub const SERVOS: usize = 4;
 pub struct ServoReading {
     /// Angles, rad; zero is the middle of the servo's range.
     pub position_rad: [f64; SERVOS],
-    /// Speeds, rad/s.
     pub velocity_rad_s: [f64; SERVOS],
     /// Motor currents, A.
     pub current_a: [f64; SERVOS],
@@ -96,36 +91,31 @@ pub struct HandleReading {
 /// Number of tools that a tracker can follow at once.
 pub const TRACKED_TOOLS: usize = 4;
 
-/// State of a tracked tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Tracked {
     /// No tool is assigned to this index.
     #[default]
     Absent,
-    /// The tracker sees the tool.
     Seen {
         /// Orientation of the tool in the camera's frame.
         c_from_tool: UnitQuaternion<f64>,
-        /// Its position in the camera's frame, m.
+        /// Position of the tool in the camera's frame, m.
         position_in_c_m: Vector3<f64>,
         /// Root mean square error of the fit to the markers, m.
         error_m: f64,
-        /// Whether it is only partly within the measurement volume.
+        /// Whether the tool is only partly within the measurement volume.
         at_the_edge: bool,
     },
-    /// Defined, but not seen.
+    /// Defined, but not visible.
     Missing {
-        /// Whether it is outside the measurement volume; otherwise it is hidden.
+        /// Whether the tool is outside the measurement volume; otherwise it is hidden.
         out_of_volume: bool,
     },
-    /// Tracking of the tool is switched off.
     Disabled,
 }
 
-/// One frame of a tracker.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackerReading {
-    /// The device's frame number.
     pub frame: u32,
     /// The tools, in the order of their definition.
     pub tools: [Tracked; TRACKED_TOOLS],
@@ -141,9 +131,7 @@ pub struct PedalReading {
 /// Six axes of a 3-D mouse such as a `SpaceMouse`, each -1 to 1, right-handed: x right, y away from the user, z up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CapReading {
-    /// Displacement of the cap.
     pub translation: Vector3<f64>,
-    /// Rotation of the cap.
     pub rotation: Vector3<f64>,
     /// Pressed buttons, one per bit, the first button in the lowest bit.
     pub buttons: u32,

@@ -1,9 +1,8 @@
-//! Holds one device: opens it on a thread of its own, gives it to the real-time thread, and opens it again when it is
-//! lost.
+//! Holds one device: opens it on a separate thread, passes it to the real-time thread, and reopens it when it is lost.
 //!
 //! The real-time thread never waits: an opened device arrives through a queue, and a lost one leaves through another,
-//! so that closing too happens on the slot's thread. A device that comes back is *connected*, never engaged; engaging
-//! is decided by the loop.
+//! so that closing happens on the slot's thread too. A device that returns is *connected*, never engaged; the loop
+//! decides about engagement.
 
 use std::{
     sync::{
@@ -19,20 +18,20 @@ use tracing::{info, warn};
 
 use super::{Device, Health, Identity, Stamped, Standing, Trouble, health::Outages};
 
-/// State of a slot as other threads than the real-time one see it.
+/// State of a slot for threads other than the real-time thread.
 #[derive(Clone, Debug, Default)]
 pub struct SlotReport {
     /// Identity that the device reported when it was opened.
     pub identity: Option<Identity>,
-    /// Why the last attempt to open it failed; `None` once it is open.
+    /// Reason why the last attempt to open the device failed; `None` once it is open.
     pub trouble: Option<Trouble>,
-    /// How many times it has been opened.
+    /// Number of times that the device has been opened.
     pub opened: u64,
 }
 
-/// Time between two attempts to open.
+/// Time between two attempts to open the device, so that a device that is absent does not keep the bus busy.
 const RETRY: Duration = Duration::from_millis(500);
-/// The thread looks so often whether it is to close, open or end; the time of a wake-up is the loop's.
+/// Polling interval of the thread for closing, opening and ending; the loop determines the time of a wake-up.
 const NAP: Duration = Duration::from_millis(20);
 
 /// The slot of one device. Dropping it closes the device and ends its thread.
@@ -47,7 +46,7 @@ pub struct Slot<D: Device> {
 }
 
 impl<D: Device + 'static> Slot<D> {
-    /// Creates a slot. `open` is called on a thread of its own, repeatedly while the device is wanted and not open.
+    /// Creates a slot. `open` is called on a separate thread, repeatedly while the device is wanted and not open.
     ///
     /// # Errors
     /// If the operating system cannot create the thread.
@@ -62,8 +61,8 @@ impl<D: Device + 'static> Slot<D> {
         Ok(Self { device: None, health, outages: Outages::default(), opened, lost, shared, thread: Some(thread) })
     }
 
-    /// Polls the device if it is open. Also accepts a device that was just opened, and hands back one that was lost or
-    /// is not wanted.
+    /// Polls the device if it is open. Also accepts a device that was just opened, and returns a lost or unwanted one
+    /// to the thread.
     pub fn poll(&mut self, now_s: f64) -> Option<Stamped<D::Reading>> {
         let reading = self.poll_device(now_s);
         self.outages.follow(&mut self.health, now_s);
@@ -76,7 +75,7 @@ impl<D: Device + 'static> Slot<D> {
         }
         let wanted = self.shared.wanted.load(Ordering::Acquire);
         let Some(device) = self.device.as_mut() else {
-            // A device that is not open can be disconnected and connected, too.
+            // A device that is not open can also be disconnected and connected.
             match (wanted, self.health.standing) {
                 (false, _) => self.health.standing = Standing::Closed,
                 (true, Standing::Closed) => self.health.standing = Standing::Opening,
@@ -88,7 +87,7 @@ impl<D: Device + 'static> Slot<D> {
         self.health = *device.health();
         if !wanted || matches!(self.health.standing, Standing::Lost(_)) {
             if let Some(Err(full)) = self.device.take().map(|device| self.lost.try_send(device)) {
-                // The thread has not yet taken the previous device; try again in the next poll.
+                // The thread has not taken the previous device yet; try again in the next poll.
                 self.device = Some(full.into_inner());
             }
             if !wanted {
@@ -99,22 +98,20 @@ impl<D: Device + 'static> Slot<D> {
         reading
     }
 
-    /// The device while it is connected, for commands.
+    /// Returns the device while it is connected, for commands.
     pub const fn device(&mut self) -> Option<&mut D> {
         self.device.as_mut()
     }
 
-    /// Its health; that of the last device while there is none.
+    /// Returns the health of the device; without a device, the health of the last one.
     pub const fn health(&self) -> &Health {
         &self.health
     }
 
-    /// Connects or disconnects the device.
     pub fn want(&self, connected: bool) {
         self.shared.wanted.store(connected, Ordering::Release);
     }
 
-    /// A view for other threads.
     pub fn view(&self) -> SlotView {
         SlotView { shared: self.shared.clone() }
     }
@@ -127,11 +124,11 @@ impl<D: Device> std::fmt::Debug for Slot<D> {
 }
 
 impl<D: Device> Slot<D> {
-    /// Ends the slot: its thread closes the device. Who ends several slots calls this for all before dropping the first: an arm
-    /// that is not served while another one brakes would go into a fault.
+    /// Ends the slot: its thread closes the device. To end several slots, call this for all of them before dropping the
+    /// first: an arm that is not served while another one brakes would report a fault.
     pub fn retire(&mut self) {
         if let Some(device) = self.device.take() {
-            // While an older one is being closed, this one is closed here.
+            // While an older device is being closed, this one is closed here.
             self.lost.try_send(device).ok();
         }
         self.shared.stop.store(true, Ordering::Release);
@@ -157,25 +154,23 @@ struct Shared {
     stop: Arc<AtomicBool>,
 }
 
-/// Reads the state of a slot, and connects or disconnects it, from other threads. By default that of a slot that never opens.
+/// Reads the state of a slot, and connects or disconnects its device, from other threads. The default belongs to a slot
+/// that never opens.
 #[derive(Clone, Debug, Default)]
 pub struct SlotView {
     shared: Shared,
 }
 
 impl SlotView {
-    /// The present state.
     pub fn report(&self) -> SlotReport {
         self.shared.report.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Connects or disconnects the device.
     pub fn want(&self, connected: bool) {
         self.shared.wanted.store(connected, Ordering::Release);
     }
 }
 
-/// The thread that opens and closes the device.
 struct Keeper<D> {
     name: String,
     give: Sender<D>,
@@ -227,7 +222,7 @@ impl<D: Device> Keeper<D> {
         change(&mut self.shared.report.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Waits; the end of the slot ends the wait.
+    /// Waits; the wait ends early when the slot ends.
     fn nap(&self, length: Duration) {
         if !self.shared.stop.load(Ordering::Acquire) {
             std::thread::park_timeout(length);
@@ -350,7 +345,7 @@ mod tests {
             assert!(slot.health().outages >= 1 && slot.health().longest_outage_s > 0.0, "an outage is not forgotten");
             let outages = slot.health().outages;
             assert!(until(&mut slot, |slot, _| slot.health().outages > outages), "the next one is counted");
-            // The device is not there at this moment; disconnecting it makes it closed, not lost.
+            // The device is absent at this moment; disconnecting it counts as closed, not lost.
             view.want(false);
             assert!(until(&mut slot, |slot, _| slot.health().standing == Standing::Closed));
             let opened = view.report().opened;

@@ -1,8 +1,8 @@
-//! Bytes and datagrams to and from a device, without waiting: the only part of a driver that calls the operating
+//! Exchanges bytes and datagrams with a device without waiting: the only part of a driver that calls the operating
 //! system.
 //!
-//! Reading returns what is there (`Ok(0)` if nothing is); an error means that the connection is closed. Opening may
-//! block and must be done on another thread; reading and writing allocate nothing.
+//! Reading returns the data that have arrived (`Ok(0)` if none); an error means that the connection is closed. Opening
+//! may block and must run on another thread; reading and writing allocate nothing.
 
 mod memory;
 mod serial;
@@ -18,7 +18,7 @@ use super::Loss;
 
 /// A stream of bytes: a serial line or a TCP connection.
 pub trait Bytes: Send {
-    /// Reads what has arrived into `buffer`; returns 0 if there is nothing now.
+    /// Reads what has arrived into `buffer`; returns 0 if nothing has arrived.
     ///
     /// # Errors
     /// [`Loss::Disconnected`] if the connection is closed.
@@ -30,9 +30,8 @@ pub trait Bytes: Send {
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss>;
 }
 
-/// Datagrams to and from one peer.
 pub trait Datagrams: Send {
-    /// Reads the next datagram; `None` if there is none now.
+    /// Reads the next datagram; returns `None` if none has arrived.
     ///
     /// # Errors
     /// [`Loss::Disconnected`] if the peer is gone.
@@ -42,8 +41,8 @@ pub trait Datagrams: Send {
     /// # Errors
     /// [`Loss::Disconnected`] if the peer is gone.
     fn send(&mut self, bytes: &[u8]) -> Result<(), Loss>;
-    /// From now on accepts only datagrams of the sender of the newest one. Has no effect if there is only one possible
-    /// sender.
+    /// From now on accepts datagrams only from the sender of the newest one. Has no effect if there is only one
+    /// possible sender.
     fn keep_to_sender(&mut self) {}
 }
 

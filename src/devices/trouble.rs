@@ -1,81 +1,71 @@
-//! Why a device could not be opened, each cause with its cure. Not for the real-time thread: it allocates.
+//! Reasons why a device could not be opened, each with its remedy. Not for the real-time thread, because it allocates.
 
 use std::{io, path::Path};
 
-/// Why a device could not be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "trouble")]
 pub enum Trouble {
-    #[error("{place} is not there")]
+    #[error("{place} was not found")]
     Absent {
         /// Port, path or identity searched for.
         place: String,
     },
-    /// The user has no permission for the device.
-    #[error("{place} may not be opened by this user")]
+    #[error("this user has no permission to open {place}")]
     Permission {
         place: String,
         /// The udev rule that grants the permission.
         udev: String,
     },
-    #[error("{place} is used by another program")]
+    #[error("{place} is in use by another program")]
     Busy {
         /// Port, path or address.
         place: String,
     },
-    /// Another device answers at this address.
     #[error("{place} is a {found}, not a {expected}")]
     WrongProduct { place: String, expected: String, found: String },
-    /// The right kind of device, but another one than the rig file names.
     #[error("{place} has the serial number {found}, not {expected}")]
     OtherSerial {
         place: String,
-        /// As the rig file has it; ids, for servos.
+        /// Serial number in the rig file; ids, for servos.
         expected: String,
-        /// What the device tells; `unknown` if it tells none.
+        /// Serial number that the device reports; `unknown` if it reports none.
         found: String,
     },
-    /// A handle for the other hand.
     #[error("{place} is for the {hand} hand")]
     OtherHand {
         place: String,
         /// `right` or `left`.
         hand: String,
     },
-    /// The device of another part of the rig answers at this part's place.
-    #[error("the device in the place of the {part} is that of the {other} ({serial}){}", since(.checked.as_deref()))]
+    #[error("the device connected as the {part} is the {other} ({serial}){}", since(.checked.as_deref()))]
     Exchanged {
-        /// Where it answers: `right sensor`.
+        /// Part at whose address the device answers: `right sensor`.
         part: &'static str,
-        /// Whose device it is: `left sensor`.
+        /// Part to which the device belongs: `left sensor`.
         other: &'static str,
         serial: Box<str>,
-        /// Date of the ready check that knows it there; `None` if the rig file says so.
+        /// Date of the ready check that found it there; `None` if the rig file assigns it.
         checked: Option<Box<str>>,
     },
     /// Bytes arrive that are not valid frames, as with a wrong line speed.
-    #[error("{place} sends bytes that make no sense at {baud} baud")]
+    #[error("{place} sends unreadable data at {baud} baud")]
     WrongBaud { place: String, baud: u32 },
-    /// The port is open, but no byte arrives.
     #[error("{place} is open but sends nothing")]
     Silent { place: String },
-    /// The program of an external device has not sent anything.
-    #[error("no program of a device sends to {place}")]
+    #[error("no device program sends to {place}")]
     NobodySends { place: String },
-    /// It sends, but shows that it hears no answer.
-    #[error("the program that sends to {place} does not hear the answers")]
+    /// The program sends, but its datagrams show that it receives no answer.
+    #[error("the device program that sends to {place} receives no answers")]
     Unheard { place: String },
-    /// There is no route to the address.
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
-    /// The computer at the address answers, but nothing listens on the port.
-    #[error("nobody listens at {place}")]
+    /// The computer at the address answers, but no program listens on the port.
+    #[error("no response from {place}")]
     NobodyListens {
         /// Address with port.
         place: String,
     },
-    /// It sends its readings to another address than this computer's.
-    #[error("{place} sends its readings to {to}, and this computer is {here}")]
+    #[error("{place} sends its readings to {to} instead of this computer ({here})")]
     SendsElsewhere {
         place: String,
         /// Address and port to which it sends.
@@ -83,23 +73,18 @@ pub enum Trouble {
         /// This computer's address as seen by the device.
         here: String,
     },
-    /// User name or password is wrong.
     #[error("{place} refuses user \"{user}\"")]
     RefusedLogin { place: String, user: String },
-    /// A library of the manufacturer is required and not installed.
     #[error("the {name} is not installed")]
     SdkMissing {
         name: String,
-        /// Where it was searched for.
+        /// Locations that were searched.
         searched: String,
     },
-    /// The library is installed but not usable.
     #[error("the {name} at {path} cannot be used: {reason}")]
     SdkUnusable { name: String, path: String, reason: String },
-    /// The device is in calibration, reset or boot mode.
     #[error("{place} is in {mode} mode")]
     NotReady { place: String, mode: String, cure: String },
-    /// The device reports a fault of its own.
     #[error("{place} reports a fault: {words}")]
     DeviceFault {
         place: String,
@@ -107,36 +92,21 @@ pub enum Trouble {
         words: String,
         cure: String,
     },
-    /// The device refused a command or setting.
     #[error("{place} refused {command}: {answer}")]
     Refused { place: String, command: String, answer: String },
-    /// A setting in the rig file is invalid.
     #[error("{key} = {value} is not possible: {allowed}")]
-    Setting {
-        /// Key in the rig file.
-        key: String,
-        value: String,
-        allowed: String,
-    },
-    /// A file that the rig file names cannot be used.
+    Setting { key: String, value: String, allowed: String },
     #[error("{key} = {path}: {reason}")]
-    File {
-        /// Key in the rig file.
-        key: String,
-        path: String,
-        reason: String,
-    },
-    /// Any other error of the operating system.
+    File { key: String, path: String, reason: String },
     #[error("{place}: {reason}")]
     Other { place: String, reason: String },
 }
 
 fn since(checked: Option<&str>) -> String {
-    checked.map_or_else(String::new, |date| format!(" since the ready check of {date}"))
+    checked.map_or_else(String::new, |date| format!(" since the ready check on {date}"))
 }
 
 impl Trouble {
-    /// What to do about it, in one sentence.
     pub fn cure(&self) -> String {
         match self {
             Self::Absent { .. } => {
@@ -148,28 +118,28 @@ impl Trouble {
             Self::Busy { .. } => "Close the other program, or the other console.".to_owned(),
             Self::WrongProduct { .. } => "Correct the port or the driver in the rig file.".to_owned(),
             Self::OtherSerial { .. } => {
-                "See whether cables or addresses of right and left are exchanged, or press Choose in the panel Devices."
+                "Check whether the cables or addresses of right and left are swapped, or press Choose in the Devices panel."
                     .to_owned()
             }
             Self::OtherHand { hand, .. } => format!(
-                "Right and left handles are exchanged: press Exchange Handles in the panel Devices. If it is meant to be here, write hand = \"{hand}\" beside its serial number in the rig file."
+                "The right and left handles are swapped: press Swap handles in the Devices panel. If the handle belongs here, add hand = \"{hand}\" next to its serial number in the rig file."
             ),
             Self::Exchanged { part, other, checked, .. } => {
                 let cure = format!(
-                    "The {part} and the {other} are exchanged: exchange their cables or addresses, or exchange the two in the panel Devices."
+                    "The {part} and the {other} are swapped: swap their cables or addresses, or swap the two in the Devices panel."
                 );
                 match checked {
                     None => cure,
-                    Some(_) => cure + " If they are meant so, give each its serial number in the rig file (Choose).",
+                    Some(_) => cure + " If this is intended, assign each its serial number in the rig file (Choose).",
                 }
             }
-            Self::WrongBaud { .. } => "Set the device's own speed as `baud` in the rig file.".to_owned(),
-            Self::Silent { .. } => "Switch the device on, check its cable, and that it is set to send.".to_owned(),
+            Self::WrongBaud { .. } => "Enter the device's speed as `baud` in the rig file.".to_owned(),
+            Self::Silent { .. } => "Switch the device on, and check its cable and that it is configured to send.".to_owned(),
             Self::NobodySends { .. } => {
-                "Start your device's program and let it send to this address; see docs/external-device.md.".to_owned()
+                "Start the device program and let it send to this address; see docs/external-device.md.".to_owned()
             }
             Self::Unheard { .. } => {
-                "Let it read the socket from which it sends, and let a firewall between the two pass both ways."
+                "Let the program read the socket from which it sends, and open any firewall between the two in both directions."
                     .to_owned()
             }
             Self::Unreachable { .. } => {
@@ -180,23 +150,23 @@ impl Trouble {
             }
             Self::SendsElsewhere { to, .. } => {
                 format!(
-                    "Give this computer the address that the device sends to ({to}), or set the device to send here."
+                    "Assign the device's destination address ({to}) to this computer, or configure the device to send here."
                 )
             }
             Self::RefusedLogin { .. } => "Correct user and password in the rig file.".to_owned(),
             Self::SdkMissing { searched, .. } => {
-                format!("Install the manufacturer's package, or set its folder; looked for in {searched}.")
+                format!("Install the manufacturer's package, or set its folder; searched in {searched}.")
             }
             Self::SdkUnusable { .. } => "Install the version that the documentation names.".to_owned(),
             Self::NotReady { cure, .. } | Self::DeviceFault { cure, .. } => cure.clone(),
-            Self::Refused { .. } => "Check that the firmware fits, then connect again.".to_owned(),
+            Self::Refused { .. } => "Check that the firmware is supported, then reconnect.".to_owned(),
             Self::Setting { allowed, .. } => format!("Correct the rig file: {allowed}."),
-            Self::File { .. } => "Put the file there, or correct its path in the rig file.".to_owned(),
-            Self::Other { .. } => "Connect again; if it stays, restart the device.".to_owned(),
+            Self::File { .. } => "Put the file in place, or correct its path in the rig file.".to_owned(),
+            Self::Other { .. } => "Reconnect; if this persists, restart the device.".to_owned(),
         }
     }
 
-    /// From an error while opening a device file; `udev` is the rule that would grant the permission.
+    /// Converts an error while opening a device file; `udev` is the rule that would grant the permission.
     pub fn of_port(path: &Path, error: &io::Error, udev: &str) -> Self {
         let place = path.display().to_string();
         match error.kind() {
@@ -207,7 +177,7 @@ impl Trouble {
         }
     }
 
-    /// From an error while connecting to a network address.
+    /// Converts an error while connecting to a network address.
     pub fn of_address(address: &str, error: &io::Error) -> Self {
         let place = address.to_owned();
         match error.kind() {

@@ -1,7 +1,8 @@
-//! Bytes of a stream that no message was made of yet: what all decoders of streams stand on.
+//! Bytes of a stream that have not been decoded yet: the common buffer of all stream decoders.
 
-/// A fixed memory for them; nothing but [`with_room`](Self::with_room) allocates. Write into [`room`](Self::room), report the number with
-/// [`filled`](Self::filled), look at [`bytes`](Self::bytes), and [`pass`](Self::pass) over what is decoded or refused.
+/// A buffer of fixed size; only [`with_room`](Self::with_room) allocates. Write into [`room`](Self::room), report the
+/// number with [`filled`](Self::filled), read [`bytes`](Self::bytes), and [`pass`](Self::pass) the bytes that are
+/// decoded or refused.
 #[derive(Debug)]
 pub(crate) struct Unread {
     memory: Box<[u8]>,
@@ -10,12 +11,12 @@ pub(crate) struct Unread {
 }
 
 impl Unread {
-    /// Empty, for so many bytes at the most.
+    /// Creates an empty buffer for at most `most` bytes.
     pub(crate) fn with_room(most: usize) -> Self {
         Self { memory: vec![0; most].into_boxed_slice(), begin: 0, end: 0 }
     }
 
-    /// Place for new bytes; empty only while every byte of the memory is unread.
+    /// Returns space for new bytes; empty only while the whole buffer is unread.
     pub(crate) fn room(&mut self) -> &mut [u8] {
         if self.begin > 0 {
             self.memory.copy_within(self.begin..self.end, 0);
@@ -29,7 +30,7 @@ impl Unread {
         self.end = self.end.saturating_add(count).min(self.memory.len());
     }
 
-    /// Takes as many of these bytes as there is room for, and returns their number.
+    /// Copies as many of these bytes as fit, and returns their number.
     pub(crate) fn feed(&mut self, bytes: &[u8]) -> usize {
         let room = self.room();
         let count = bytes.len().min(room.len());
@@ -38,29 +39,25 @@ impl Unread {
         count
     }
 
-    /// All that is unread, the oldest first.
     pub(crate) fn bytes(&self) -> &[u8] {
         &self.memory[self.begin..self.end]
     }
 
-    /// Whether nothing is.
     pub(crate) const fn is_empty(&self) -> bool {
         self.begin == self.end
     }
 
-    /// Whether there is no room for another byte.
     pub(crate) fn is_full(&self) -> bool {
         self.bytes().len() == self.memory.len()
     }
 
-    /// The first `count` bytes are read; returns them.
+    /// Marks the first `count` bytes as read and returns them.
     pub(crate) fn pass(&mut self, count: usize) -> &[u8] {
         let from = self.begin;
         self.begin = from.saturating_add(count).min(self.end);
         &self.memory[from..self.begin]
     }
 
-    /// Discards all, and returns the number.
     pub(crate) const fn clear(&mut self) -> usize {
         let count = self.end - self.begin;
         self.begin = 0;

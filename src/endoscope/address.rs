@@ -1,13 +1,13 @@
-//! Where a picture comes from, as a rig file has it.
+//! Address of an image source, as given in a rig file.
 
 use std::{fmt, path::PathBuf, str::FromStr};
 
 use percent_encoding::percent_decode_str;
 
-/// Longest address.
+/// Maximum length of an address.
 const LENGTH_MOST: usize = 2000;
 
-/// Where a picture comes from.
+/// Address of an image source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// Motion JPEG over HTTP.
@@ -16,12 +16,12 @@ pub enum Address {
     Rtsp(Endpoint),
     /// A camera or capture card of this computer.
     Camera {
-        /// Its device file.
+        /// Device file.
         path: PathBuf,
-        /// How it is to be set.
+        /// Camera settings.
         capture: Capture,
     },
-    /// A `.mjpeg`, a folder of JPEGs, or one JPEG.
+    /// A `.mjpeg` or `.h264` file, a folder of JPEGs, or one JPEG.
     File(PathBuf),
 }
 
@@ -53,18 +53,18 @@ impl fmt::Debug for Login {
     }
 }
 
-/// How a camera of this computer is to be set; what is left out stays as the camera has it.
+/// Settings of a camera of this computer. A setting that is omitted stays as the camera has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capture {
     /// Width and height, px.
     pub size_px: Option<[usize; 2]>,
-    /// Pictures a second.
+    /// Frames per second.
     pub rate_hz: Option<u32>,
-    /// Format; the best one that it has, if left out.
+    /// Pixel format; if omitted, the best one that the camera supports.
     pub pixels: Option<Pixels>,
 }
 
-/// A format in which a camera of this computer can give its pictures.
+/// A pixel format of a camera of this computer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pixels {
     Mjpeg,
@@ -86,11 +86,10 @@ impl Pixels {
 
 /// An address that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("\"{address}\" is not an address of a picture: {why}")]
+#[error("\"{address}\" is not an address of an image source: {why}")]
 pub struct AddressError {
-    /// As it was given.
     pub address: String,
-    /// What is wrong, and what is possible.
+    /// The fault, and what is possible.
     pub why: &'static str,
 }
 
@@ -124,7 +123,7 @@ impl FromStr for Address {
     }
 }
 
-/// A device file, with settings behind a question mark.
+/// Parses a device file, with settings after a question mark.
 fn camera(text: &str) -> Result<Address, &'static str> {
     let (path, settings) = text.split_once('?').unwrap_or((text, ""));
     if !path.starts_with("/dev/") {
@@ -140,7 +139,7 @@ fn camera(text: &str) -> Result<Address, &'static str> {
             }
             Some(("rate", rate)) => {
                 let rate = rate.parse().ok().filter(|rate| (1..=240).contains(rate));
-                capture.rate_hz = Some(rate.ok_or("rate is 1 to 240 pictures a second")?);
+                capture.rate_hz = Some(rate.ok_or("rate is 1 to 240 frames per second")?);
             }
             Some(("format", name)) => {
                 let pixels = Pixels::ALL.into_iter().find(|pixels| pixels.name() == name);

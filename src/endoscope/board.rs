@@ -1,8 +1,9 @@
-//! The checkerboard that a camera is calibrated with: its places, on paper, and in a picture (for emulators and tests).
+//! The checkerboard for camera calibration: its geometry, its printout, and its rendered image (for emulators and
+//! tests).
 //!
-//! A board is named by its inner corners, where four squares meet. One of the two numbers is odd and the other even, so that the board looks
-//! different upside down. Its frame: the origin at the first inner corner, beside the black square in the corner of the board; x along the first
-//! number, y along the second, z away from who looks at it, m.
+//! A board is named by its inner corners, where four squares meet. One of the two numbers is odd and the other even, so
+//! that the board looks different upside down. Its frame: the origin at the first inner corner, next to the black
+//! square in the corner of the board; x along the first number, y along the second, z away from the viewer, m.
 
 use std::{fmt::Write as _, str::FromStr};
 
@@ -14,11 +15,11 @@ use crate::Lens;
 const CORNERS: std::ops::RangeInclusive<usize> = 3..=40;
 /// Side of a square, m.
 pub const SQUARE_M: std::ops::RangeInclusive<f64> = 0.000_5..=0.2;
-/// White paper around the squares, in squares.
+/// White margin around the squares, in squares.
 const MARGIN: f64 = 1.0;
-/// Samples of a pixel along each side where an edge runs through it.
+/// Samples along each side of a pixel that contains an edge.
 const SAMPLES: usize = 6;
-/// Grey values: of what is printed, of the paper, and of what is behind it.
+/// Grey values of the printed squares, the paper, and the background.
 const BLACK: f64 = 28.0;
 const WHITE: f64 = 222.0;
 const BEHIND: f64 = 92.0;
@@ -31,24 +32,21 @@ pub struct Board {
     square_m: f64,
 }
 
-/// Why there is no such board.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoardError {
-    /// It is not written as two numbers.
-    #[error("\"{0}\" is no board; give its inner corners, such as 9x6")]
+    /// Not written as two numbers.
+    #[error("\"{0}\" is not a board size; give its inner corners, such as 9x6")]
     Text(String),
     /// A side has too few or too many corners.
-    #[error("{0} inner corners along a side are not supported; give {least} to {most}", least = CORNERS.start(), most = CORNERS.end())]
+    #[error("a board cannot have {0} inner corners along a side; give {least} to {most}", least = CORNERS.start(), most = CORNERS.end())]
     Corners(usize),
-    /// It looks the same upside down.
     #[error("a board of {0}x{1} inner corners looks the same upside down; give an odd and an even number, such as 9x6")]
     Ambiguous(usize, usize),
-    /// Its squares are too small or too large.
-    #[error("squares of {0} mm are not supported; give {least} to {most} mm", least = SQUARE_M.start() * 1e3, most = SQUARE_M.end() * 1e3)]
+    #[error("squares cannot have a side of {0} mm; give {least} to {most} mm", least = SQUARE_M.start() * 1e3, most = SQUARE_M.end() * 1e3)]
     Square(f64),
 }
 
-/// Inner corners along both sides, as `9x6`.
+/// Inner corners along both sides, written as `9x6`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corners(pub [usize; 2]);
 
@@ -63,10 +61,10 @@ impl FromStr for Corners {
 }
 
 impl Board {
-    /// A board with so many inner corners, and squares of this side.
+    /// Makes a board with these inner corners and this side of a square.
     ///
     /// # Errors
-    /// [`BoardError`].
+    /// [`BoardError`] for a size out of range, or a board that looks the same upside down.
     pub fn new(corners @ [across, down]: [usize; 2], square_m: f64) -> Result<Self, BoardError> {
         if let Some(side) = corners.into_iter().find(|side| !CORNERS.contains(side)) {
             return Err(BoardError::Corners(side));
@@ -95,28 +93,28 @@ impl Board {
         self.corners[0] * self.corners[1]
     }
 
-    /// Number of a corner in the order of [`Self::places_m`].
+    /// Returns the number of a corner in the order of [`Self::places_m`].
     pub const fn index(&self, [across, down]: [usize; 2]) -> usize {
         down * self.corners[0] + across
     }
 
-    /// All inner corners in the board's frame, row by row, m.
+    /// Returns all inner corners in the board's frame, row by row, m.
     pub fn places_m(&self) -> Vec<Vector3<f64>> {
         let [across, down] = self.corners;
         let place = |i: usize, j: usize| Vector3::new(i as f64, j as f64, 0.0) * self.square_m;
         (0..down).flat_map(|j| (0..across).map(move |i| place(i, j))).collect()
     }
 
-    /// The middle of the board, m.
+    /// Returns the middle of the board, m.
     pub fn middle_m(&self) -> Vector3<f64> {
         let [across, down] = self.corners.map(|side| 0.5 * (side - 1) as f64);
         Vector3::new(across, down, 0.0) * self.square_m
     }
 
-    /// Brightness of a place in units of squares; `None` beside the paper.
+    /// Returns the brightness at a position in units of squares; `None` outside the paper.
     fn grey(&self, place: &Vector2<f64>) -> Option<f64> {
         let size = Vector2::from(self.corners.map(|side| (side + 1) as f64));
-        // From the outer corner of the squares.
+        // Measured from the outer corner of the squares.
         let from = place.add_scalar(1.0);
         let on_paper = from.iter().zip(&size).all(|(at, size)| (-MARGIN..=size + MARGIN).contains(at));
         let on_squares = from.iter().zip(&size).all(|(at, size)| (0.0..*size).contains(at));
@@ -126,7 +124,7 @@ impl Board {
         })
     }
 
-    /// The board as a drawing in its true size, for a printer.
+    /// Returns the board as a drawing in its true size, for printing.
     ///
     /// ```
     /// let board = nima_endoscope::Board::new([9, 6], 0.010)?;
@@ -161,11 +159,11 @@ impl Board {
     }
 }
 
-/// Draws boards as one lens sees them, with the share of each pixel that an edge covers.
+/// Renders boards as seen through a lens; pixels on an edge are blended by area.
 #[derive(Debug)]
 pub struct Portrait {
     size_px: [usize; 2],
-    /// Direction of each pixel's middle, where the lens sees something.
+    /// Direction of each pixel's centre; `None` outside the lens's view.
     sights: Vec<Option<Vector2<f64>>>,
 }
 
@@ -178,13 +176,13 @@ impl Portrait {
         Self { size_px: lens.size_px, sights }
     }
 
-    /// Grey values, 0 to 255, row by row, of a board at this place before the lens.
+    /// Returns the grey values, 0 to 255, row by row, of a board at this pose in the camera's frame.
     pub fn draw(&self, board: &Board, camera_from_board: &Isometry3<f64>) -> Vec<f32> {
         let [width, height] = self.size_px;
         let from = camera_from_board.inverse();
         let way = camera_from_board.rotation.inverse();
         let eye = from.translation.vector / board.square_m;
-        // Where a line of sight meets the board, in squares.
+        // The intersection of a line of sight with the board, in squares.
         let meets = |sight: &Vector2<f64>| {
             let direction = way * sight.push(1.0);
             let steps = -eye.z / direction.z;
@@ -200,7 +198,7 @@ impl Portrait {
                 continue;
             };
             let [x, y] = [at % width, at / width];
-            // How far the next pixel is on the board.
+            // The step to the next pixel on the board.
             let next = |there: bool, step: usize| if there { met[at + step].map(|next| next - middle) } else { None };
             let before = |there: bool, step: usize| if there { met[at - step].map(|last| middle - last) } else { None };
             let across = next(x + 1 < width, 1).or_else(|| before(x > 0, 1)).unwrap_or_default();
@@ -211,7 +209,7 @@ impl Portrait {
     }
 }
 
-/// Brightness of a pixel whose sides are these ways on the board.
+/// Brightness of a pixel whose sides span these vectors on the board.
 fn shade(board: &Board, middle: &Vector2<f64>, across: &Vector2<f64>, down: &Vector2<f64>) -> f64 {
     let reach = (across.abs() + down.abs()) * 0.5;
     let is_even = middle.iter().zip(&reach).all(|(at, reach)| (at - at.round()).abs() > *reach);

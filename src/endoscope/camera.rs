@@ -1,40 +1,41 @@
-//! Where an endoscope looks, and how its lens bends the picture: a pinhole with radial and tangential distortion (Brown 1966), the first four
+//! Pose and lens of an endoscope camera: a pinhole with radial and tangential distortion (Brown 1966), the first four
 //! coefficients of the usual model (`OpenCV`).
 //!
-//! The camera's frame: x to the right of the picture, y down, z away from the lens, m. Pixels are counted from the upper left corner.
+//! The camera's frame: x to the right of the image, y down, z away from the lens, m. Pixels are counted from the upper
+//! left corner.
 
 use nalgebra::{Isometry3, Matrix2, Vector2, Vector3};
 
-/// A thing must be so far in front of the lens, m.
+/// Minimum distance of a visible point from the lens, m.
 const NEAREST_M: f64 = 1e-4;
-/// Steps of Newton's method; four are enough for what a lens does.
+/// Steps of Newton's method; four are enough for the distortion of real lenses.
 const STEPS: usize = 12;
-/// An angle beyond which no lens of this kind sees: 75 degrees from the axis.
+/// Tangent of the largest angle that a lens of this kind can see: 75 degrees from the axis.
 const TANGENT_MOST: f64 = 3.8;
 
-/// A lens and the picture behind it.
+/// A lens with its image size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
-    /// Width and height of the picture, px.
+    /// Width and height of the image, px.
     pub size_px: [usize; 2],
-    /// Focal lengths across and down the picture, px; the same where pixels are square.
+    /// Horizontal and vertical focal lengths, px; equal if pixels are square.
     pub focal_px: Vector2<f64>,
-    /// Where the lens's axis meets the picture, px.
+    /// Intersection of the lens's axis with the image, px.
     pub centre_px: Vector2<f64>,
-    /// How the lens bends the picture.
     pub bend: Bend,
 }
 
-/// Distortion: where a direction is seen, both with z = 1.
+/// Distortion: maps a direction to the one where it appears, both with z = 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bend {
-    /// Radial: the tangent of the angle from the axis, `t`, is seen at `t (1 + k1 t^2 + k2 t^4)`. Below 0 as a barrel.
+    /// Radial: the tangent of the angle from the axis, `t`, appears at `t (1 + k1 t^2 + k2 t^4)`. Negative for barrel
+    /// distortion.
     pub k1: f64,
-    /// The next radial term.
+    /// Next radial term.
     pub k2: f64,
-    /// Tangential, of a lens that is not square to the sensor.
+    /// Tangential, of a lens that is not parallel to the sensor.
     pub p1: f64,
-    /// The same across.
+    /// Tangential, in the other direction.
     pub p2: f64,
 }
 
@@ -44,7 +45,7 @@ impl Bend {
         Self { k1, k2: 0.0, p1: 0.0, p2: 0.0 }
     }
 
-    /// Where a direction is seen.
+    /// Returns where a direction appears.
     pub fn at(&self, flat: &Vector2<f64>) -> Vector2<f64> {
         let Self { p1, p2, .. } = *self;
         let square = flat.norm_squared();
@@ -55,7 +56,7 @@ impl Bend {
         flat * self.radially(square) + tangential
     }
 
-    /// How that place moves with the direction.
+    /// Returns the derivative of that position by the direction.
     pub fn slope(&self, flat: &Vector2<f64>) -> Matrix2<f64> {
         let Self { k1, k2, p1, p2 } = *self;
         let square = flat.norm_squared();
@@ -75,9 +76,9 @@ impl Bend {
         1.0 + square * (self.k1 + square * self.k2)
     }
 
-    /// The tangent at which the picture turns back on itself: nothing beyond has a place.
+    /// Returns the tangent at which the image folds back on itself: directions beyond it are not seen.
     pub fn tangent_most(&self) -> f64 {
-        // Where 1 + 3 k1 t^2 + 5 k2 t^4 is zero first.
+        // The first zero of 1 + 3 k1 t^2 + 5 k2 t^4.
         let half = 3.0 * self.k1;
         let discriminant = 9.0 * self.k1 * self.k1 - 20.0 * self.k2;
         if discriminant < 0.0 {
@@ -88,7 +89,7 @@ impl Bend {
         turns.sqrt().min(TANGENT_MOST)
     }
 
-    /// The direction that is seen at `bent`; `None` where there is none.
+    /// Returns the direction that appears at `bent`; `None` if there is none.
     fn straightened(&self, bent: &Vector2<f64>) -> Option<Vector2<f64>> {
         let far = bent.norm();
         if !far.is_finite() {
@@ -117,13 +118,14 @@ impl Bend {
 }
 
 impl Lens {
-    /// A lens with square pixels, looking through the middle of the picture.
+    /// Makes a lens with square pixels whose axis meets the middle of the image.
     pub fn simple(size_px: [usize; 2], focal_px: f64, k1: f64) -> Self {
         let centre_px = Vector2::from(size_px.map(|side| 0.5 * side as f64));
         Self { size_px, focal_px: Vector2::repeat(focal_px), centre_px, bend: Bend::radial(k1) }
     }
 
-    /// Place in the picture of a point in the camera's frame (m), px; `None` if the lens does not see it. The place may be outside of the picture.
+    /// Projects a point of the camera's frame (m) into the image, px; `None` if the lens does not see it. The result
+    /// may be outside the image.
     pub fn project(&self, point_m: &Vector3<f64>) -> Option<Vector2<f64>> {
         let ahead = point_m.z > NEAREST_M && point_m.iter().all(|x| x.is_finite());
         let flat = ahead.then(|| point_m.xy() / point_m.z)?;
@@ -131,47 +133,48 @@ impl Lens {
         seen.then(|| self.centre_px + self.bend.at(&flat).component_mul(&self.focal_px))
     }
 
-    /// The direction of what is seen at a place of the picture (px), with z = 1; `None` where the lens sees nothing.
+    /// Returns the direction, with z = 1, that appears at a position of the image (px); `None` where the lens sees
+    /// nothing.
     pub fn direction(&self, place_px: &Vector2<f64>) -> Option<Vector3<f64>> {
         let bent = (place_px - self.centre_px).component_div(&self.focal_px);
         self.bend.straightened(&bent).map(|flat| flat.push(1.0))
     }
 }
 
-/// A lens at a place of the workspace.
+/// A lens at a pose in the workspace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Its lens.
     pub lens: Lens,
-    /// Its place: takes a point of the camera's frame to the workspace, m.
+    /// Pose: maps a point of the camera's frame to the workspace, m.
     pub world_from_camera: Isometry3<f64>,
 }
 
 impl Camera {
-    /// Place in the picture of a point of the workspace (m), px; `None` if the lens does not see it.
+    /// Projects a point of the workspace (m) into the image, px; `None` if the lens does not see it.
     pub fn project(&self, point_m: &Vector3<f64>) -> Option<Vector2<f64>> {
         self.lens.project(&self.world_from_camera.inverse_transform_point(&(*point_m).into()).coords)
     }
 
-    /// The line of sight through a place of the picture (px): from where, and in which direction, both in the workspace.
+    /// Returns the line of sight through a position of the image (px): its origin and its direction, both in the
+    /// workspace.
     pub fn sight(&self, place_px: &Vector2<f64>) -> Option<[Vector3<f64>; 2]> {
         let direction = self.lens.direction(place_px)?;
         Some([self.world_from_camera.translation.vector, self.world_from_camera.rotation * direction])
     }
 
-    /// The camera of a second lens, so far to the right of this one (m) and otherwise alike.
+    /// Returns the camera of a second, equal lens at this distance to the right (m).
     #[must_use]
     pub fn beside(mut self, right_m: f64) -> Self {
         self.world_from_camera.translation.vector += self.right() * right_m;
         self
     }
 
-    /// The direction to the right of the picture in the workspace, unit length.
+    /// Returns the direction to the right of the image in the workspace, unit length.
     pub fn right(&self) -> Vector3<f64> {
         self.world_from_camera.rotation * Vector3::x()
     }
 
-    /// The direction up in the picture in the workspace, unit length.
+    /// Returns the upward direction of the image in the workspace, unit length.
     pub fn up(&self) -> Vector3<f64> {
         self.world_from_camera.rotation * -Vector3::y()
     }
@@ -193,11 +196,12 @@ mod tests {
         let at = |x, y| lens(0.3).project(&Vector3::new(x, y, 0.1)).unwrap();
         assert_eq!(at(0.0, 0.0), Vector2::new(640.0, 360.0));
         assert!(at(0.01, 0.0).x > 640.0 && at(0.0, 0.01).y > 360.0);
-        // 1 + 0.3 x 0.1^2 times as far as without distortion.
+        // Farther out by the factor 1 + 0.3 x 0.1^2 than without distortion.
         assert!((at(0.01, 0.0).x - 640.0 - 90.0 * 1.003).abs() < 1e-9);
         assert_eq!(lens(0.0).project(&Vector3::new(0.0, 0.0, -0.1)), None);
         assert_eq!(lens(0.0).project(&Vector3::new(f64::NAN, 0.0, 0.1)), None);
-        // A barrel turns back on itself: what is far beside has no second place within the picture.
+        // Barrel distortion folds back on itself: a point far to the side must not appear a second time within the
+        // image.
         assert_eq!(lens(-0.3).project(&Vector3::new(0.2, 0.0, 0.1)), None);
     }
 
@@ -223,7 +227,7 @@ mod tests {
             let again_px = lens.project(&(lens.direction(&place_px).unwrap() * 0.2)).unwrap();
             assert!((again_px - place_px).norm() < 1e-6, "{again_px} {place_px}");
         }
-        // With x and y exchanged, p1 and p2 exchange their parts.
+        // Swapping x and y swaps the roles of p1 and p2.
         let other = Bend { p1: bend.p2, p2: bend.p1, ..bend };
         let flat = Vector2::new(0.3, 0.1);
         assert!((bend.at(&flat).yx() - other.at(&flat.yx())).norm() < 1e-15);
@@ -239,7 +243,7 @@ mod tests {
             let world_from_camera = Isometry3::from_parts(Vector3::new(0.1, -0.2, 0.3).into(), rotation);
             let camera = Camera { lens: lens(k1), world_from_camera };
             let sight = camera.sight(&place_px);
-            // A barrel does not fill the corners.
+            // Strong barrel distortion does not fill the corners.
             prop_assert!(sight.is_some() || k1 < -0.1);
             if let Some([from_m, direction]) = sight {
                 let again_px = camera.project(&(from_m + 0.15 * direction)).unwrap();

@@ -1,7 +1,7 @@
-//! Brightness and colour differences, as cameras and video decoders give them, as red, green and blue.
+//! Converts brightness and colour differences, as delivered by cameras and video decoders, to red, green and blue.
 //!
-//! Two pixels, or four, share their colours (ITU-R BT.601-7 and BT.709-6; the full range of JPEG, JFIF 1.02). The library `yuv` computes them,
-//! with errors of at most three steps of 255.
+//! Two or four pixels share their colours (ITU-R BT.601-7 and BT.709-6; the full range of JPEG, JFIF 1.02). The library
+//! `yuv` computes them, with errors of at most three steps of 255.
 
 use yuv::{
     BufferStoreMut, YuvBiPlanarImage, YuvChromaSubsampling, YuvConversionMode, YuvError, YuvPackedImage,
@@ -11,7 +11,7 @@ use yuv::{
 
 use crate::{Damage, Picture, jpeg};
 
-/// How the bytes of a picture lie in memory.
+/// Memory layout of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layout {
     /// Two pixels in four bytes, Y U Y V.
@@ -22,16 +22,16 @@ pub enum Layout {
     I420,
 }
 
-/// How brightness is made of the colours.
+/// Weights of the colours in the brightness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Matrix {
-    /// Of standard definition, and of JPEG.
+    /// Standard definition, and JPEG.
     Bt601,
-    /// Of high definition.
+    /// High definition.
     Bt709,
 }
 
-/// Which values are black and white.
+/// Values of black and white.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Range {
     /// 0 and 255.
@@ -40,27 +40,25 @@ pub enum Range {
     Limited,
 }
 
-/// What the numbers of a picture mean.
+/// Interpretation of an image's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Colours {
     pub matrix: Matrix,
     pub range: Range,
 }
 
-/// How a picture that is not compressed lies in its bytes.
+/// Format of an uncompressed image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Raw {
-    /// Order of the bytes.
     pub layout: Layout,
-    /// What they mean.
     pub colours: Colours,
     /// Width and height, px.
     pub size_px: [usize; 2],
-    /// Bytes from one row to the next; of I420 in the brightness, its colours have half of it.
+    /// Bytes from one row to the next. For I420 this is the brightness plane; the colour planes have half of it.
     pub stride: usize,
 }
 
-/// One plane: its bytes, and how many of them one row takes.
+/// One plane: its bytes, and the bytes from one row to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
     pub bytes: &'a [u8],
@@ -69,7 +67,7 @@ pub struct Plane<'a> {
 }
 
 impl Colours {
-    /// What is meant where nobody says it: as most decoders take it, by the picture's height.
+    /// Returns the default if the source does not specify it: like most decoders, by the height of the image.
     pub const fn usual(size_px: [usize; 2]) -> Self {
         let matrix = if size_px[1] >= 720 { Matrix::Bt709 } else { Matrix::Bt601 };
         Self { matrix, range: Range::Limited }
@@ -89,7 +87,7 @@ impl Colours {
 }
 
 impl Raw {
-    /// Bytes that a whole picture has, with the gap behind its last row.
+    /// Returns the bytes of a whole image, including the gap after its last row.
     pub fn bytes(&self) -> usize {
         let Self { layout, size_px: [_, height], stride, .. } = *self;
         let halves = height.div_ceil(2);
@@ -100,10 +98,8 @@ impl Raw {
         }
     }
 
-    /// The picture in these bytes.
-    ///
     /// # Errors
-    /// If bytes are missing, or the picture is larger than any camera's.
+    /// If bytes are missing, or the image is larger than that of any camera.
     pub fn picture(&self, bytes: &[u8]) -> Result<Picture, Damage> {
         let Self { layout, colours, size_px: size_px @ [width, height], stride } = *self;
         jpeg::check_size(size_px)?;
@@ -146,16 +142,16 @@ impl Raw {
     }
 }
 
-/// The picture of three planes, the latter two with one value for each square of four pixels.
+/// Returns the image of three planes, of which the last two have one value for each square of four pixels.
 ///
 /// # Errors
-/// If bytes are missing, or the picture is larger than any camera's.
+/// If bytes are missing, or the image is larger than that of any camera.
 pub fn of_planes([y, u, v]: [Plane<'_>; 3], colours: Colours, size_px: [usize; 2]) -> Result<Picture, Damage> {
     jpeg::check_size(size_px)?;
     let [width, height] = size_px;
     let half_px = size_px.map(|side| side.div_ceil(2));
     for (plane, [width, height]) in [y, u, v].iter().zip([size_px, half_px, half_px]) {
-        // The library leaves out rows whose gap is missing.
+        // The library skips rows whose gap is missing.
         if plane.stride < width || plane.bytes.len() < plane.stride * height {
             return Err(Damage::Torn);
         }
@@ -175,7 +171,8 @@ pub fn of_planes([y, u, v]: [Plane<'_>; 3], colours: Colours, size_px: [usize; 2
     })
 }
 
-/// The picture that `paint` makes: it takes the pixels, their bytes in a row, and what the colours mean.
+/// Returns the image that `paint` writes; `paint` gets the pixels, the bytes of a row, and the interpretation of the
+/// colours.
 fn painted(
     colours: Colours,
     size_px @ [width, height]: [usize; 2],
@@ -187,10 +184,10 @@ fn painted(
     Ok(Picture { size_px, rgba })
 }
 
-/// Brightness and colours of a picture of three bytes a pixel, in the layout I420 without gaps: for emulators and tests.
+/// Converts an image with three bytes per pixel to the layout I420 without gaps: for emulators and tests.
 ///
 /// # Panics
-/// If the bytes are not those of a picture of this size.
+/// If the number of bytes does not match this size.
 pub fn to_i420(rgb: &[u8], [width, height]: [usize; 2], colours: Colours) -> Vec<u8> {
     assert!(rgb.len() == 3 * width * height);
     let (range, matrix) = colours.of_library();

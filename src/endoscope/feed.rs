@@ -1,4 +1,4 @@
-//! A source on threads of its own: one reads, one decodes, and whoever shows the picture takes the newest.
+//! Runs an image source on its own threads: one reads, one decodes, and the display takes the newest image.
 
 use std::{
     io,
@@ -16,34 +16,35 @@ use crate::{
     waiting::Waiting,
 };
 
-/// Time from a failure to the next attempt. With the time to reach the camera it stays below a second.
+/// Time from a failure to the next attempt. Together with the connection time it stays below a second.
 const RETRY: Duration = Duration::from_millis(400);
-/// The first attempt after a picture was there comes sooner.
+/// Time to the first attempt after images have arrived.
 const RETRY_FIRST: Duration = Duration::from_millis(50);
-/// Who has not looked for this long is not looking: then only some pictures are decoded, so that what is wrong with them is still told.
+/// A display that has not taken an image for this long is not active. Then only some images are decoded, so that faults
+/// are still detected.
 const LOOKED: Duration = Duration::from_millis(500);
 const UNSEEN: Duration = Duration::from_millis(500);
-/// A thread that waits looks so often whether it is still wanted.
+/// Interval at which a waiting thread checks whether it is still needed.
 const NAP: Duration = Duration::from_millis(50);
 
-/// Reads and decodes pictures until it is dropped. Dropping it waits for nobody.
+/// Reads and decodes images until it is dropped. Dropping does not wait for its threads.
 #[derive(Debug)]
 pub struct Feed {
     shared: Arc<Shared>,
 }
 
-/// What is known of the picture at one moment.
+/// The state of the source at one moment.
 #[derive(Clone, Debug)]
 pub struct Look<T> {
-    /// The newest picture as it was prepared, and its number; `None` before the first.
+    /// The newest prepared image and its number; `None` before the first.
     pub picture: Option<(u64, T)>,
-    /// How it stands with it.
+    /// Status of the source.
     pub standing: Standing,
-    /// Time since its last byte arrived, and how long it was on its way beyond the least, where the camera tells.
+    /// Time since its last byte arrived, plus its delay beyond the minimum if the camera sends time stamps.
     pub age: Option<Duration>,
-    /// Pictures a second.
+    /// Frames per second.
     pub rate_hz: f64,
-    /// Time from the last byte of the newest picture until it could be taken.
+    /// Time from the last byte of the newest image until it was available.
     pub work: Duration,
 }
 
@@ -51,12 +52,12 @@ pub struct Look<T> {
 struct Shared {
     wanted: Wanted,
     state: Mutex<State>,
-    /// What is not decoded yet.
+    /// Images that are not decoded yet.
     waiting: Mutex<Waiting>,
     came: Condvar,
-    /// Where what is compressed goes too, as it came.
+    /// Also receives compressed images, unmodified.
     reel: OnceLock<Reel>,
-    /// How the pictures are prepared.
+    /// Tone applied to the images.
     tone: Mutex<Tone>,
 }
 
@@ -65,13 +66,13 @@ struct State {
     watch: Watch,
     trouble: Option<Trouble>,
     is_still: bool,
-    /// It has been open.
+    /// Whether it has been open before.
     opened: bool,
-    /// What came last.
+    /// Format of the last image.
     format: Option<Format>,
     newest: Option<Newest>,
     shown: u64,
-    /// When somebody last took the picture, and when one was last decoded.
+    /// When the image was last taken, and when one was last decoded.
     looked: Option<Instant>,
     decoded: Option<Instant>,
 }
@@ -89,11 +90,11 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Feed {
-    /// Starts to read pictures from an address. `expected_px` is the size that they should have, if it is known; `wake` is called after every
-    /// picture and every failure.
+    /// Starts to read images from an address. `expected_px` is their expected size, if known; `wake` is called after
+    /// every image and every failure.
     ///
     /// # Errors
-    /// If the operating system gives no thread.
+    /// If the operating system cannot start a thread.
     pub fn start(
         address: Address,
         expected_px: Option<[usize; 2]>,
@@ -127,27 +128,27 @@ impl Feed {
         Ok(feed)
     }
 
-    /// Every JPEG and every picture of H.264 from now on goes into this reel too. The first reel that is given counts.
+    /// Also sends every JPEG and every H.264 frame from now on to this reel. Only the first reel is used.
     pub fn record_to(&self, reel: Reel) {
         self.shared.reel.set(reel).ok();
     }
 
-    /// Pictures are prepared with this tone from now on, the newest one too.
+    /// Applies this tone to all images from now on, including the newest.
     pub fn set_tone(&self, tone: Tone) {
         *locked(&self.shared.tone) = tone;
     }
 
-    /// Whether what comes goes into a reel, which has nothing that is not compressed.
+    /// Whether the images can go into a reel, which accepts only compressed ones.
     pub fn is_recordable(&self) -> bool {
         !matches!(locked(&self.shared.state).format, Some(Format::Raw(_)))
     }
 
-    /// How it stands with the picture at this moment, for who does not show it.
+    /// Returns the current status, for a caller that does not display the images.
     pub fn standing(&self, now: Instant) -> Standing {
         locked(&self.shared.state).standing(now)
     }
 
-    /// The newest picture, and how it stands with it at this moment. Where nobody looks, only two pictures a second are decoded.
+    /// Returns the newest image and the current status. If nothing calls this, only two images per second are decoded.
     pub fn look(&self, now: Instant) -> Look<Arc<Picture>> {
         let mut state = locked(&self.shared.state);
         state.looked = Some(now);
@@ -185,7 +186,7 @@ impl State {
 }
 
 impl State {
-    /// Whether a picture is decoded now.
+    /// Whether an image must be decoded now.
     fn wants(&self, now: Instant) -> bool {
         let within = |at: Option<Instant>, time| at.is_some_and(|at| now.saturating_duration_since(at) < time);
         self.is_still || within(self.looked, LOOKED) || !within(self.decoded, UNSEEN)
@@ -213,13 +214,14 @@ impl Shared {
                 was_good
             };
             wake();
-            // A camera that lets itself be opened and closes at once is not asked without a pause.
+            // Retries without delay only if the source worked for a while, so that a camera that closes at once is not
+            // polled continuously.
             let soon = was_good && begin.elapsed() > RETRY;
             self.rest(if soon { RETRY_FIRST } else { RETRY });
         }
     }
 
-    /// Reads until something is wrong; `None` if nobody wants pictures any more.
+    /// Reads until something fails; `None` if images are no longer needed.
     fn read_from(&self, mut source: Box<dyn Source>) -> Option<Trouble> {
         {
             let mut state = locked(&self.state);
@@ -260,7 +262,7 @@ impl Shared {
         }
     }
 
-    /// Decodes the newest picture again and again.
+    /// Decodes the newest image again and again.
     fn decode(&self, wake: &dyn Fn()) {
         let mut decoder = h264::Decoder::default();
         let mut last: Option<(Compressed, Tone)> = None;
@@ -285,7 +287,7 @@ impl Shared {
                 state.decoded = Some(Instant::now());
                 state.watch.decoded(compressed.arrived, decoded.as_ref());
                 if let Ok(picture) = &mut decoded {
-                    // What is wrong with a picture is judged as it came.
+                    // Judge the image before the tone changes it.
                     tone.apply(picture);
                 }
                 if let Ok(picture) = decoded {
@@ -297,12 +299,13 @@ impl Shared {
                 }
             }
             wake();
-            // A picture of a stream cannot be decoded again: the next one has the new tone.
+            // A frame of a stream cannot be decoded again: the next frame gets the new tone.
             last = Some((compressed, tone)).filter(|(compressed, _)| compressed.stands_alone());
         }
     }
 
-    /// Waits for a picture, and tells whether it is the newest, or for another tone of the last one; `None` if nobody wants one any more.
+    /// Waits for an image, or for another tone of the last one; also returns whether the image is the newest. `None` if
+    /// images are no longer needed.
     fn next(&self, last: Option<&(Compressed, Tone)>) -> Option<(Compressed, bool)> {
         let mut waiting = locked(&self.waiting);
         loop {
@@ -315,7 +318,7 @@ impl Shared {
             if let Some((compressed, _)) = last.filter(|(_, tone)| *tone != *locked(&self.tone)) {
                 return Some((compressed.clone(), true));
             }
-            // A word that was missed costs a nap, not the picture.
+            // A missed notification costs one short wait, not the image.
             waiting = self.came.wait_timeout(waiting, NAP).unwrap_or_else(PoisonError::into_inner).0;
         }
     }

@@ -1,5 +1,5 @@
-//! Pictures from files: one JPEG, a folder of them, or one after the other in a `.mjpeg` or `.h264`; the latter over and over, at the rate of a
-//! camera.
+//! Images from files: one JPEG, a folder of them, or a sequence in a `.mjpeg` or `.h264` file. Sequences repeat at the
+//! frame rate of a camera.
 
 use std::{
     fs::{self, File},
@@ -11,11 +11,11 @@ use std::{
 
 use crate::{Compressed, Format, Source, Trouble, h264, jpeg::Splitter};
 
-/// Time from one picture to the next.
+/// Time from one image to the next.
 const PERIOD: Duration = Duration::from_nanos(33_333_333);
-/// A source gives the word back after this time.
+/// Maximum time that a source blocks its caller.
 const PATIENCE: Duration = Duration::from_millis(100);
-/// Longest file that is taken for one picture, and the most files of a folder.
+/// Maximum size of a file with one image, and maximum number of files in a folder.
 const BYTES_MOST: u64 = 16 << 20;
 const FILES_MOST: usize = 100_000;
 const READ_BYTES: usize = 256 << 10;
@@ -39,7 +39,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, Trouble> {
 
 fn trouble(path: &Path, error: &std::io::Error) -> Trouble {
     let reason = match error.kind() {
-        std::io::ErrorKind::NotFound => "it is not there".to_owned(),
+        std::io::ErrorKind::NotFound => "no such file or folder".to_owned(),
         std::io::ErrorKind::PermissionDenied => "this user may not read it".to_owned(),
         _ => error.to_string(),
     };
@@ -73,7 +73,6 @@ fn now(jpeg: Vec<u8>) -> Compressed {
     Compressed::jpeg(jpeg, Instant::now(), None)
 }
 
-/// One picture.
 struct Still {
     path: PathBuf,
     given: bool,
@@ -94,17 +93,17 @@ impl Source for Still {
     }
 }
 
-/// Pictures one after the other, as fast as they are asked for.
+/// A sequence of images, as fast as they are requested.
 trait Series: Send {
     fn next(&mut self) -> Result<Vec<u8>, Trouble>;
 
-    /// What its pictures are.
+    /// Format of its images.
     fn format(&self, _: &[u8]) -> Format {
         Format::Jpeg
     }
 }
 
-/// Gives a series at the rate of a camera.
+/// Delivers a series at the frame rate of a camera.
 struct Paced<S> {
     series: S,
     due: Instant,
@@ -121,14 +120,14 @@ impl<S: Series> Source for Paced<S> {
         let bytes = self.series.next()?;
         let now_is = Instant::now();
         thread::sleep(self.due.saturating_duration_since(now_is));
-        // What was missed is not caught up.
+        // Missed images are skipped.
         self.due = self.due.max(now_is) + PERIOD;
         let format = self.series.format(&bytes);
         Ok(Some(Compressed { format, ..now(bytes) }))
     }
 }
 
-/// The JPEGs of a folder in the order of their names; looked for again after the last one.
+/// The JPEGs of a folder in the order of their names; the folder is read again after the last one.
 struct Folder {
     path: PathBuf,
     files: std::vec::IntoIter<PathBuf>,
@@ -148,13 +147,13 @@ impl Series for Folder {
     }
 }
 
-/// JPEGs one after the other in one file.
+/// A sequence of JPEGs in one file.
 struct Film {
     path: PathBuf,
     file: File,
     splitter: Splitter,
     buffer: Vec<u8>,
-    /// Pictures since the beginning of the file.
+    /// Images since the beginning of the file.
     found: u64,
 }
 
@@ -186,7 +185,7 @@ impl Series for Film {
     }
 }
 
-/// A stream of H.264 in a file, as `ffmpeg -f h264` writes it.
+/// An H.264 stream in a file, as written by `ffmpeg -f h264`.
 struct Stream {
     path: PathBuf,
     file: File,

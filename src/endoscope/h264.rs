@@ -1,5 +1,5 @@
-//! H.264 as cameras send it: pictures as "access units" of NAL units behind start codes (ITU-T H.264, annex B). Decoder and encoder are Cisco's
-//! (feature `h264`); without them both say so.
+//! H.264 as sent by cameras: frames as "access units" of NAL units after start codes (ITU-T H.264, annex B). Decoder
+//! and encoder are Cisco's (feature `h264`); without the feature both return an error.
 
 #[cfg(not(feature = "h264"))]
 mod absent;
@@ -19,18 +19,18 @@ pub use units::{is_key, kind, nal_units};
 
 use crate::Picture;
 
-/// This program can decode and encode H.264.
+/// Whether this program can decode and encode H.264.
 pub const IS_BUILT: bool = cfg!(feature = "h264");
-/// What is said where it cannot.
+/// Message of a program without the feature.
 #[cfg(not(feature = "h264"))]
 const ABSENT: &str =
     "this program was built without H.264: use `cargo build --release --locked -p nima-console --features h264`";
 
-/// A picture that was decoded.
+/// A decoded frame.
 #[derive(Debug)]
 pub struct Taken {
-    /// Its pixels, where somebody wants them.
+    /// Its pixels, if requested.
     pub picture: Option<Picture>,
-    /// The same for the same picture.
+    /// Equal for equal images.
     pub hash: u64,
 }

@@ -1,4 +1,4 @@
-//! Motion JPEG over HTTP/1.1, as cameras send it: an answer that never ends, of parts that are pictures.
+//! Motion JPEG over HTTP/1.1, as sent by cameras: an endless response whose parts are images.
 //!
 //! A client of its own, because it needs so little: one request, or two where the camera asks for a password, no redirection, no encryption.
 //! Everything that the other end decides is limited: the length of heads and pictures, and how long they take.
@@ -19,18 +19,18 @@ use http_auth::{PasswordClient, PasswordParams};
 use self::answer::{Answer, Part, Wrong};
 use crate::{Compressed, Endpoint, Source, Trouble};
 
-/// Time to reach one address of the camera, and how many are tried.
+/// Time for connecting to one address of the camera, and maximum number of addresses tried.
 const CONNECT: Duration = Duration::from_millis(500);
 const ADDRESSES_MOST: usize = 4;
-/// Nothing for this long: the connection is given up and made again.
+/// After this time without data the connection is closed and opened again.
 const SILENT: Duration = Duration::from_secs(2);
-/// A head or a picture may take this long; a camera that sends byte after byte else holds the screen up for ever.
+/// Maximum time for a head or an image; a camera that sends byte after byte would otherwise block the screen for ever.
 const SLOW: Duration = Duration::from_secs(5);
-/// After this time it is looked whether somebody still wants the picture.
+/// Interval at which the thread checks whether images are still needed.
 const PATIENCE: Duration = Duration::from_millis(100);
 const READ_BYTES: usize = 64 << 10;
 
-/// A camera that sends.
+/// A camera that is sending.
 pub(crate) struct Http {
     endpoint: Endpoint,
     place: String,
@@ -39,7 +39,7 @@ pub(crate) struct Http {
     answer: Answer,
     parts: VecDeque<Part>,
     buffer: Vec<u8>,
-    /// When the last byte came, and when the last picture was whole.
+    /// When the last byte arrived, and when the last image was complete.
     heard: Instant,
     whole: Instant,
     ended: bool,
@@ -93,13 +93,13 @@ impl Http {
         }
     }
 
-    /// Reads what has come; false if nothing has.
+    /// Reads the available data; false if there are none.
     fn read(&mut self) -> Result<bool, Trouble> {
         match self.stream.read(&mut self.buffer) {
             Ok(0) => Err(Trouble::Closed { place: self.place.clone() }),
             Ok(count) => {
                 self.heard = Instant::now();
-                // Pictures that were whole before something went wrong are still shown.
+                // Images that were complete before a failure are still shown.
                 match self.answer.take(&self.buffer[..count], &mut self.parts) {
                     Ok(()) => Ok(true),
                     Err(Wrong::Locked(challenges)) if self.log_in(&challenges)? => Ok(true),
@@ -133,7 +133,7 @@ fn ask(endpoint: &Endpoint, authorization: Option<&str>) -> Result<TcpStream, Tr
     Ok(stream)
 }
 
-/// Connects to the first address of the camera that answers.
+/// Connects to the first address of the camera that responds.
 pub(crate) fn connect(endpoint: &Endpoint) -> Result<TcpStream, Trouble> {
     let place = endpoint.place();
     let no_such_name = || Trouble::NoSuchName { place: place.clone() };

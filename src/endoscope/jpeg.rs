@@ -1,4 +1,4 @@
-//! JPEGs: decoded for the screen, found in a file, and made by emulators.
+//! JPEGs: decoded for the screen, found in a file, and encoded for emulators.
 
 mod encode;
 mod split;
@@ -14,17 +14,18 @@ use zune_jpeg::{
 pub use encode::{Encoder, encode};
 pub(crate) use split::Splitter;
 
-/// The longest side of a picture, and the most pixels: somewhat more than 4096 x 2160. What is larger is refused before memory is taken for it.
+/// Maximum side of an image, and maximum number of pixels: somewhat more than 4096 x 2160. A larger image is refused
+/// before memory is allocated for it.
 const SIDE_MOST_PX: usize = 4096;
 const PIXELS_MOST: usize = 9_500_000;
-/// Bytes of padding that may follow the end of a picture.
+/// Maximum padding after the end of an image, bytes.
 const PADDING_MOST: usize = 64;
 const BEGIN: [u8; 2] = [0xff, 0xd8];
 const END: [u8; 2] = [0xff, 0xd9];
-/// A segment with which the decoder takes the usual Huffman tables.
+/// A segment that makes the decoder use the standard Huffman tables.
 const AVI: &[u8] = b"\xff\xe0\x00\x10AVI1\0\0\0\0\0\0\0\0\0\0";
 
-/// A picture as the screen takes it.
+/// A decoded image, in the screen's format.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     /// Width and height, px.
@@ -33,36 +34,35 @@ pub struct Picture {
     pub rgba: Vec<u8>,
 }
 
-/// What is wrong with one picture, so that it cannot be shown.
+/// Why an image cannot be shown.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     #[error("it is not a JPEG")]
     NotJpeg,
-    /// Its end is missing.
     #[error("its end is missing")]
     Torn,
-    #[error("{} x {} pixels are too many", .size_px[0], .size_px[1])]
+    #[error("{} x {} pixels exceed the limit", .size_px[0], .size_px[1])]
     TooLarge { size_px: [usize; 2] },
     #[error("it cannot be decoded: {reason}")]
     Undecodable { reason: String },
 }
 
-/// Brightness up to which a picture is black: what a sensor shows with its cap on, of 255.
+/// Mean brightness up to which an image is black: the level of a sensor with its cap on, of 255.
 const BLACK_MEAN: u32 = 6;
-/// And the brightest pixel of a black picture.
+/// Maximum brightness of any pixel of a black image.
 const BLACK_MOST: u32 = 40;
-/// Every so many pixels one is looked at.
+/// One pixel of this many is checked.
 const BLACK_STEP: usize = 61;
 
 impl std::fmt::Debug for Picture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // Not millions of numbers.
+        // Prints the size instead of millions of numbers.
         f.debug_struct("Picture").field("size_px", &self.size_px).finish_non_exhaustive()
     }
 }
 
 impl Picture {
-    /// There is nothing to see on it.
+    /// Whether the image is black.
     pub fn is_black(&self) -> bool {
         let brightness = |pixel: &[u8]| pixel[..3].iter().map(|&value| u32::from(value)).max().unwrap_or(0);
         let mut sum = 0;
@@ -78,10 +78,10 @@ impl Picture {
     }
 }
 
-/// Decodes a JPEG to pixels. Takes memory only for what the header asks for within the limits.
+/// Decodes a JPEG to pixels. Allocates only what the header requires, within the limits.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The fault of the image.
 pub fn decode(jpeg: &[u8]) -> Result<Picture, Damage> {
     if !jpeg.starts_with(&BEGIN) {
         return Err(Damage::NotJpeg);
@@ -90,8 +90,8 @@ pub fn decode(jpeg: &[u8]) -> Result<Picture, Damage> {
     if !tail.windows(2).any(|two| two == END) {
         return Err(Damage::Torn);
     }
-    // Strict: what is damaged in the middle of a picture would else be grey without a word. What is cut out of its middle, with the end in
-    // place, is grey all the same: the library does not tell.
+    // Strict, because a damaged part would otherwise appear as plain grey. If a part is cut out of the middle and the
+    // end is intact, the library still shows grey and reports nothing.
     let options = DecoderOptions::new_fast()
         .set_strict_mode(true)
         .set_max_width(SIDE_MOST_PX)
@@ -111,7 +111,7 @@ pub fn decode(jpeg: &[u8]) -> Result<Picture, Damage> {
     Ok(Picture { size_px, rgba })
 }
 
-/// Many USB cameras leave the usual Huffman tables out.
+/// Adds the standard Huffman tables, which many USB cameras omit.
 fn completed(jpeg: &[u8]) -> Cow<'_, [u8]> {
     let mut at = 2;
     while let Some([0xff, marker, high, low]) = jpeg.get(at..at + 4) {
@@ -125,7 +125,7 @@ fn completed(jpeg: &[u8]) -> Cow<'_, [u8]> {
     Cow::Borrowed(jpeg)
 }
 
-/// Refuses a picture that is larger than any camera's, or has no pixels.
+/// Refuses an image that is larger than that of any camera, or has no pixels.
 pub(crate) fn check_size(size_px: [usize; 2]) -> Result<(), Damage> {
     let [width, height] = size_px;
     if width > SIDE_MOST_PX || height > SIDE_MOST_PX || width * height > PIXELS_MOST {
@@ -142,7 +142,7 @@ fn damage(error: DecodeErrors) -> Damage {
         DecodeErrors::ExhaustedData => Damage::Torn,
         DecodeErrors::IllegalMagicBytes(_) => Damage::NotJpeg,
         DecodeErrors::LargeDimensions(side) => Damage::TooLarge { size_px: [side; 2] },
-        // One line, however long the library's is.
+        // One line, however long the library's message is.
         other => {
             Damage::Undecodable { reason: format!("{other:?}").chars().filter(|c| !c.is_control()).take(120).collect() }
         }
@@ -155,7 +155,6 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// A picture with edges and slopes.
     pub(crate) fn pattern(size_px: [usize; 2]) -> Vec<u8> {
         let value = |x: usize, y: usize| {
             if (x / 24 + y / 24).is_multiple_of(2) {
@@ -213,7 +212,7 @@ pub(crate) mod tests {
         assert!(!decode(&encode(&lit, [256, 256], 85)).unwrap().is_black());
     }
 
-    /// Decodes so many pictures with random damage.
+    /// Decodes this many images with random damage.
     fn mutate(seed: u64, count: usize) {
         let mut random = fastrand::Rng::with_seed(seed);
         let originals = [[64, 48], [33, 17]].map(|size_px| encode(&pattern(size_px), size_px, 80));

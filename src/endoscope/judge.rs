@@ -1,4 +1,4 @@
-//! What is wrong with a picture that comes: it stands still, is black, cannot be read, has another size, or is old. Time is handed in.
+//! Judges incoming images: frozen, black, unreadable, of the wrong size, or late. Time is passed in as an argument.
 
 use std::{
     collections::VecDeque,
@@ -8,56 +8,56 @@ use std::{
 
 use crate::{Compressed, Damage, Format, Picture};
 
-/// A picture that does not change for this long is frozen.
+/// An image that does not change for this long is frozen.
 pub const FROZEN: Duration = Duration::from_millis(200);
-/// A picture that is this old when it arrives is late.
+/// An image that is this old on arrival is late.
 pub const LATE: Duration = Duration::from_millis(200);
-/// A damaged picture is told for this long.
+/// A damaged image is reported for this long.
 const DAMAGE_TOLD: Duration = Duration::from_millis(500);
-/// Period over which the rate is counted, and the most arrivals that are remembered.
+/// Period over which the rate is counted, and maximum number of arrivals stored.
 const RATE_OVER: Duration = Duration::from_secs(1);
 const ARRIVALS_MOST: usize = 512;
-/// The camera's clock may run this much slower than ours: 200 parts in a million.
+/// The camera's clock may run slower than ours by this factor: 200 parts in a million.
 const DRIFT: f64 = 2e-4;
 
-/// What is wrong with the picture.
+/// A fault of the images.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wrong {
-    /// No picture came, or always the same one, for so long.
+    /// For this long, no image arrived, or always the same one.
     Frozen(Duration),
-    /// The last picture could not be shown.
+    /// The last image could not be shown.
     Damaged(Damage),
-    /// It has another size than the camera of the rig, or than the first one: what it has, and what is expected.
+    /// The size differs from that of the rig's camera, or from the first image: actual and expected size.
     Size([usize; 2], [usize; 2]),
-    /// There is nothing to see.
+    /// The image is black.
     Black,
-    /// It was this old when it arrived.
+    /// Its age on arrival.
     Late(Duration),
 }
 
-/// How it stands with the picture.
+/// Status of the images.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// Not yet there, for the first time.
+    /// Not available yet, for the first time.
     Opening,
-    /// Pictures come.
+    /// Images are arriving.
     Live,
-    /// One picture, of which no more is expected.
+    /// A single image; no more are expected.
     Still,
-    /// Pictures come, or came, and something is wrong with them.
+    /// Images are or were arriving, with a fault.
     Wrong(Wrong),
-    /// There is none: why, and what to do.
+    /// No images: the reason, with its remedy.
     Lost(crate::Trouble),
 }
 
-/// Follows the pictures of one source.
+/// Monitors the images of one source.
 #[derive(Debug)]
 pub(crate) struct Watch {
-    /// Known in advance, or that of the first picture.
+    /// Known in advance, or the size of the first image.
     expected_px: Option<[usize; 2]>,
     is_still: bool,
     hash: Option<u64>,
-    /// When a picture last came that was not the one before.
+    /// When an image last arrived that differed from the previous one.
     changed: Option<Instant>,
     arrivals: VecDeque<Instant>,
     damage: Option<(Instant, Damage)>,
@@ -72,7 +72,7 @@ struct Shown {
 }
 
 impl Watch {
-    /// `expected_px`: the size that the rig's camera has, if it is known.
+    /// `expected_px`: the size of the rig's camera, if known.
     pub(crate) fn new(expected_px: Option<[usize; 2]>) -> Self {
         Self {
             expected_px,
@@ -86,14 +86,14 @@ impl Watch {
         }
     }
 
-    /// The source was opened, again or for the first time.
+    /// Called when the source was opened, for the first time or again.
     pub(crate) fn opened(&mut self, is_still: bool) {
         self.is_still = is_still;
         self.delay = Delay::default();
         self.damage = None;
     }
 
-    /// A picture came, not decoded yet.
+    /// Called for an image that has arrived and is not decoded yet.
     pub(crate) fn arrived(&mut self, compressed: &Compressed) {
         let at = compressed.arrived;
         if compressed.stands_alone() {
@@ -107,7 +107,8 @@ impl Watch {
         self.delay.take(compressed);
     }
 
-    /// What came at this moment looks so: the same number for the same picture. A stream, whose pictures refer to each other, never sends the same bytes.
+    /// Notes the hash of an image that arrived at this moment: equal for equal images. A stream, whose frames refer to
+    /// each other, never repeats its bytes.
     pub(crate) fn looks(&mut self, at: Instant, hash: u64) {
         if self.hash != Some(hash) {
             self.hash = Some(hash);
@@ -115,7 +116,7 @@ impl Watch {
         }
     }
 
-    /// The picture that came at this moment was decoded.
+    /// Called when the image that arrived at this moment was decoded.
     pub(crate) fn decoded(&mut self, at: Instant, decoded: Result<&Picture, &Damage>) {
         match decoded {
             Ok(picture) => {
@@ -126,18 +127,19 @@ impl Watch {
         }
     }
 
-    /// How old the newest picture was when it arrived, beyond the least that was seen; `None` where the camera sends no stamps.
+    /// Returns the age of the newest image on arrival, beyond the observed minimum; `None` if the camera sends no time
+    /// stamps.
     pub(crate) fn late(&self) -> Option<Duration> {
         self.delay.late()
     }
 
-    /// Pictures a second.
+    /// Frames per second.
     pub(crate) fn rate_hz(&self, now: Instant) -> f64 {
         let begin = now.checked_sub(RATE_OVER);
         self.arrivals.iter().filter(|at| Some(**at) >= begin).count() as f64 / RATE_OVER.as_secs_f64()
     }
 
-    /// What is wrong now; what hides the most comes first.
+    /// Returns the current fault; the one that hides most of the image comes first.
     pub(crate) fn wrong(&self, now: Instant) -> Option<Wrong> {
         if self.is_still {
             return self.damage.as_ref().map(|(_, damage)| Wrong::Damaged(damage.clone()));
@@ -148,7 +150,7 @@ impl Watch {
         if let Some((_, damage)) = self.damage.as_ref().filter(|(at, _)| comes && since(*at) < DAMAGE_TOLD) {
             return Some(Wrong::Damaged(damage.clone()));
         }
-        // Black pictures are all alike: while they come, the light is the cause and not a camera that hangs.
+        // Black images are all equal: if they keep arriving, the light is the cause, not a frozen camera.
         if comes && self.shown.is_some_and(|shown| shown.is_black) {
             return Some(Wrong::Black);
         }
@@ -164,11 +166,11 @@ impl Watch {
     }
 }
 
-/// Of pixels that are not compressed one of so many runs is looked at: the noise of a sensor is everywhere.
+/// Of uncompressed pixels, only one run of this many bytes in several is hashed: sensor noise is everywhere.
 const RUN_BYTES: usize = 256;
 const RUN_OF: usize = 16;
 
-/// The same for the same picture.
+/// Returns a hash that is equal for equal images.
 fn hash(compressed: &Compressed) -> u64 {
     let mut hasher = DefaultHasher::new();
     match compressed.format {
@@ -178,7 +180,8 @@ fn hash(compressed: &Compressed) -> u64 {
     hasher.finish()
 }
 
-/// How late pictures are, from the camera's own stamps: the least difference of both clocks is that of a picture that was not held up.
+/// Delay of images from the camera's time stamps: the minimum difference between both clocks belongs to an image
+/// without delay.
 #[derive(Debug, Default)]
 struct Delay {
     begin: Option<Instant>,
@@ -190,7 +193,7 @@ struct Delay {
 impl Delay {
     fn take(&mut self, compressed: &Compressed) {
         let at = compressed.arrived;
-        // On one clock nothing has to be guessed.
+        // On a common clock no estimate is needed.
         if let Some(taken) = compressed.taken {
             self.late_s = Some(at.saturating_duration_since(taken).as_secs_f64());
             return;
@@ -224,7 +227,7 @@ mod tests {
         Picture { size_px, rgba: vec![value; 4 * size_px[0] * size_px[1]] }
     }
 
-    /// A camera on a clock of its own.
+    /// A camera with its own clock.
     struct Bench {
         watch: Watch,
         now: Instant,

@@ -1,10 +1,12 @@
-//! The endoscope's picture, from an address to pixels.
+//! The endoscope image, from an address to pixels.
 //!
-//! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, a camera of this computer, a file, a folder), opens it on threads of its own, opens it again when it is lost,
-//! and has the newest picture ready, with its age, its rate and what is wrong with it ([`Standing`]). Nobody waits for anybody: a picture that
-//! nobody took is replaced by the next one; a recording gets all that is compressed as it came, over a [`Reel`]. [`Camera`] is where the endoscope looks and how its lens bends the picture; [`Board`] is what it
-//! is calibrated with; [`time_code`], [`jpeg::encode`] and [`board::Portrait`] are for emulators and tests. Bad input (a picture or an answer that is cut off, too large, of another format) is a
-//! [`Trouble`] with its cure, or a [`Damage`] of one picture. Knows no loop, device or window.
+//! A [`Feed`] takes an [`Address`] (motion JPEG over HTTP, H.264 over RTSP, a camera of this computer, a file, a
+//! folder), opens it on its own threads and reopens it when it is lost. It provides the newest image with its age, its
+//! rate and its status ([`Standing`]). No thread waits for another: an image that was not taken is replaced by the next
+//! one. A recording receives all compressed images unmodified through a [`Reel`]. [`Camera`] describes the pose and the
+//! lens of the endoscope; [`Board`] is the calibration target; [`time_code`], [`jpeg::encode`] and [`board::Portrait`]
+//! are for emulators and tests. Bad input (an image or a response that is truncated, too large, or of another format)
+//! is a [`Trouble`] with its remedy, or a [`Damage`] of one image. Independent of loop, devices and window.
 //!
 //! ```
 //! use nima_endoscope::{Damage, jpeg};

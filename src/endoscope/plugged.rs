@@ -1,4 +1,4 @@
-//! The cameras of this computer, as the kernel lists them: without opening one.
+//! The cameras of this computer, as listed by the kernel, without opening them.
 
 use std::{
     fs,
@@ -8,13 +8,12 @@ use std::{
 /// A camera that is plugged in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PluggedCamera {
-    /// Its device file.
     pub path: PathBuf,
-    /// As the driver calls it.
+    /// As reported by the driver.
     pub name: String,
 }
 
-/// The cameras of this computer, by number.
+/// Returns the cameras of this computer, by number.
 pub fn plugged_cameras() -> Vec<PluggedCamera> {
     listed(Path::new("/sys/class/video4linux"))
 }
@@ -30,7 +29,7 @@ fn camera(folder: &Path) -> Option<(u32, PluggedCamera)> {
     let node = folder.file_name()?.to_str()?;
     let number = node.strip_prefix("video")?.parse().ok()?;
     let line = |name: &str| fs::read_to_string(folder.join(name)).ok();
-    // A camera has further nodes, which give no pictures (settings of each picture, for example).
+    // A camera has further nodes that do not deliver images (the settings of each image, for example).
     if line("index").is_some_and(|index| index.trim() != "0") {
         return None;
     }

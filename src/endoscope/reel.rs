@@ -1,4 +1,4 @@
-//! Pictures on their way into a recording: a queue with an end, in which nobody waits.
+//! Images on their way into a recording: a bounded queue that never blocks.
 
 use std::{
     collections::VecDeque,
@@ -10,19 +10,21 @@ use std::{
 
 use crate::{Compressed, Format};
 
-/// Most bytes and most pictures that wait: some seconds of a usual camera. What comes while it is full is dropped and counted.
+/// Maximum bytes and images in the queue: some seconds of a usual camera. When it is full, new images are dropped and
+/// counted.
 const BYTES_MOST: usize = 32 << 20;
 const PICTURES_MOST: usize = 256;
 
-/// Where a [`crate::Feed`] puts every JPEG and every picture of a stream of H.264, as it came; the other end is a [`ReelEnd`]. Without one, nothing is kept.
+/// Receives every JPEG and every frame of an H.264 stream of a [`crate::Feed`], unmodified; the other end is a
+/// [`ReelEnd`]. Without one, nothing is kept.
 #[derive(Clone, Debug, Default)]
 pub struct Reel(Arc<Shared>);
 
-/// Looks now and then at the newest JPEG, beside a recording.
+/// Takes the newest JPEG at intervals, independent of a recording.
 #[derive(Clone, Debug)]
 pub struct Glimpse(Arc<Shared>);
 
-/// Takes the pictures out. Dropping it ends that.
+/// Takes the images out. Dropping it closes the queue.
 #[derive(Debug)]
 pub struct ReelEnd {
     shared: Arc<Shared>,
@@ -33,20 +35,20 @@ pub struct ReelEnd {
 struct Shared {
     waiting: Mutex<Waiting>,
     dropped: AtomicU64,
-    /// Whether somebody looks, and the newest picture since.
+    /// Whether a glimpse is active, and the newest image since its last look.
     looked_at: AtomicBool,
     newest: Mutex<Option<Compressed>>,
 }
 
 #[derive(Debug, Default)]
 struct Waiting {
-    /// The end that takes them; an earlier one gets nothing any more.
+    /// The current taker; earlier takers get no more images.
     taker: Option<u64>,
     takers: u64,
     pictures: VecDeque<Compressed>,
     bytes: usize,
     rests: bool,
-    /// Until a picture of the stream comes that refers to no other.
+    /// Set until a key frame of the stream arrives.
     skips: bool,
 }
 
@@ -61,7 +63,7 @@ impl Shared {
 }
 
 impl Waiting {
-    /// Whether it would be understood: a picture of a stream only after all those since one that refers to no other.
+    /// Whether a decoder could use the image: a frame of a stream only after all frames since a key frame.
     fn understands(&mut self, format: Format) -> bool {
         match format {
             Format::Raw(_) => false,
@@ -80,7 +82,7 @@ impl Waiting {
 }
 
 impl Reel {
-    /// The other end, for a new recording: it gets the pictures from now on, and an earlier one gets none any more.
+    /// Returns the other end, for a new recording: it gets the images from now on, and an earlier end gets no more.
     pub fn end(&self) -> ReelEnd {
         let mut waiting = self.0.waiting();
         waiting.takers += 1;
@@ -91,24 +93,24 @@ impl Reel {
         ReelEnd { shared: Arc::clone(&self.0), number: waiting.takers }
     }
 
-    /// Whether no pictures are taken for now, because nobody wants them recorded.
+    /// Sets whether images are discarded for now, because no recording needs them.
     pub fn rest(&self, rests: bool) {
         let mut waiting = self.0.waiting();
         waiting.rests = rests;
         waiting.skips |= rests;
     }
 
-    /// A new stream begins.
+    /// Called when a new stream begins.
     pub(crate) fn begins(&self) {
         self.0.waiting().skips = true;
     }
 
-    /// For who looks at the newest picture now and then, whether a recording takes the pictures or not.
+    /// Returns a view of the newest image, which works with and without a recording.
     pub fn glimpse(&self) -> Glimpse {
         Glimpse(Arc::clone(&self.0))
     }
 
-    /// Puts a picture in, unless there is no room, nobody takes it, or it is not compressed. Never waits for the other end.
+    /// Adds an image, unless there is no room, no taker, or it is not compressed. Never waits for the other end.
     pub(crate) fn put(&self, picture: &Compressed) {
         if self.0.looked_at.load(Ordering::Relaxed) && picture.format == Format::Jpeg {
             *self.0.newest() = Some(picture.clone());
@@ -129,7 +131,7 @@ impl Reel {
 }
 
 impl Glimpse {
-    /// The newest picture since the last call. Only while somebody looks is one kept for the next call.
+    /// Returns the newest image since the last call. An image is kept for the next call only while `looks` is set.
     pub fn take(&self, looks: bool) -> Option<Compressed> {
         self.0.looked_at.store(looks, Ordering::Relaxed);
         self.0.newest().take()
@@ -137,7 +139,7 @@ impl Glimpse {
 }
 
 impl ReelEnd {
-    /// The oldest picture that waits.
+    /// Takes the oldest image out of the queue.
     pub fn take(&self) -> Option<Compressed> {
         let mut waiting = self.shared.waiting();
         if waiting.taker != Some(self.number) {
@@ -148,7 +150,7 @@ impl ReelEnd {
         Some(picture)
     }
 
-    /// How many had no room so far.
+    /// Number of images dropped so far.
     pub fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
@@ -180,7 +182,7 @@ mod tests {
         let reel = Reel::default();
         reel.put(&picture(10));
         let end = reel.end();
-        assert!(end.take().is_none(), "nobody took that one");
+        assert!(end.take().is_none(), "no one took that image");
         for _ in 0..20 {
             reel.put(&picture(2 << 20));
         }
@@ -237,7 +239,7 @@ mod tests {
         reel.begins();
         put(&[of(4, false), of(5, true), of(6, false)]);
         assert_eq!(lengths(), [5, 6], "the camera was opened again");
-        // One has no room: those that refer to it are left out too.
+        // There is no room for one frame, so the frames that refer to it are left out too.
         put(&[of(7, true), of(33 << 20, false), of(8, false), of(9, true), of(10, false)]);
         assert_eq!((lengths(), end.dropped()), (vec![7, 9, 10], 1));
         reel.rest(true);

@@ -1,5 +1,5 @@
-//! H.264 (or motion JPEG) over RTSP, as network cameras send it: one connection, which also carries the pictures. The client is `retina`, which
-//! stands on tokio: its runtime is of this thread alone.
+//! H.264 (or motion JPEG) over RTSP, as sent by network cameras: one connection, which also carries the images. The
+//! client is `retina`, which uses tokio; its runtime is confined to this thread.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -21,23 +21,23 @@ use url::Url;
 
 use crate::{Address, Compressed, Endpoint, Format, Login, Source, Trouble, http};
 
-/// Time in which the camera must have answered everything and have begun.
+/// Time in which the camera must have answered all requests and started to send.
 const OPENING: Duration = Duration::from_secs(3);
-/// Nothing for this long: the connection is given up and made again.
+/// After this time without data the connection is closed and opened again.
 const SILENT: Duration = Duration::from_secs(2);
 const PATIENCE: Duration = Duration::from_millis(100);
-/// From 1900, from which senders count, to 1970, s.
+/// From 1900, the epoch of the senders, to 1970, s.
 const SINCE_1900_S: f64 = 2_208_988_800.0;
 
-/// A camera that plays.
+/// A camera that is playing.
 struct Rtsp {
     place: String,
     runtime: Runtime,
-    /// Ended within the runtime.
+    /// Must be dropped within the runtime.
     session: Option<Pin<Box<Demuxed>>>,
     is_jpeg: bool,
     heard: Instant,
-    /// Of the first report of the sender: its own time, s since 1970, and the stamp that belongs to it, s.
+    /// From the sender's first report: its own time, s since 1970, and the matching time stamp, s.
     reported_s: Option<[f64; 2]>,
 }
 
@@ -52,16 +52,16 @@ impl From<retina::Error> for Failure {
     }
 }
 
-/// Opens a camera, and lets it play.
+/// Opens a camera and starts it.
 pub(crate) fn open(endpoint: &Endpoint) -> Result<Box<dyn Source>, Trouble> {
     guarded(&endpoint.place(), || begin(endpoint))
 }
 
-/// The client panics over some damaged answers (its parser of descriptions, above all, and where the rest takes for granted what that lets
-/// through): what was asked for ends, and not the thread.
+/// The client panics on some malformed responses, mostly in its parser of descriptions and in code that relies on it.
+/// Turns a panic into an error of the request, so that the thread survives.
 fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, Trouble>) -> Result<T, Trouble> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        let reason = "an answer that cannot be taken apart".to_owned();
+        let reason = "a response that cannot be parsed".to_owned();
         Err(Trouble::Unreadable { place: place.to_owned(), reason })
     })
 }
@@ -103,7 +103,7 @@ async fn play(url: Url, login: Option<Credentials>) -> Result<(Demuxed, bool), F
     Ok((session.play(options).await?.demuxed()?, is_jpeg))
 }
 
-/// The trouble behind an error of the client, which tells it in words only.
+/// Converts an error of the client, which is only a text.
 fn told(place: &str, error: &retina::Error, reach: Option<&Endpoint>) -> Trouble {
     let place = place.to_owned();
     let text = error.to_string();
@@ -112,7 +112,7 @@ fn told(place: &str, error: &retina::Error, reach: Option<&Endpoint>) -> Trouble
     }
     let begins = |words: &str| text.starts_with(words);
     if begins("Unable to connect") {
-        // Why, is asked once more: its error does not say so.
+        // The error does not include its cause, so connect once more to find it.
         let why = reach.and_then(|endpoint| http::connect(endpoint).err());
         return why.unwrap_or(Trouble::Closed { place });
     }
@@ -133,7 +133,7 @@ impl Rtsp {
         Compressed { format, bytes: frame.into_data(), arrived, stamp_s: Some(stamp_s), taken: None }
     }
 
-    /// The first report of a connection: later ones might step.
+    /// Only the first report of a connection counts: later ones might jump.
     fn report(&mut self, packet: &ReceivedCompoundPacket) {
         let Some(stamp) = packet.rtp_timestamp().filter(|_| self.reported_s.is_none()) else { return };
         let mut reports = packet.pkts().filter_map(|packet| packet.as_sender_report().ok().flatten());
@@ -151,7 +151,7 @@ impl Source for Rtsp {
 }
 
 impl Rtsp {
-    /// The next picture, as far as it comes in time.
+    /// Returns the next image, if it arrives in time.
     fn wait(&mut self) -> Result<Option<Compressed>, Trouble> {
         let begin = Instant::now();
         while begin.elapsed() < PATIENCE {

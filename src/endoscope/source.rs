@@ -1,4 +1,4 @@
-//! What every source of pictures is.
+//! The interface of every image source.
 
 use std::{
     sync::{
@@ -10,50 +10,49 @@ use std::{
 
 use crate::{Address, Damage, Picture, Raw, Trouble, files, http, jpeg};
 
-/// One picture as it came, not decoded.
+/// One image as received, not decoded.
 #[derive(Clone, Debug)]
 pub struct Compressed {
-    /// What it is.
     pub format: Format,
-    /// As the camera sent it.
+    /// As sent by the camera.
     pub bytes: Vec<u8>,
-    /// When its last byte was here.
+    /// Arrival of its last byte.
     pub arrived: Instant,
-    /// The camera's own stamp, s since some moment of its own; `None` where it sends none.
+    /// The camera's time stamp, s, from an arbitrary origin; `None` if it sends none.
     pub stamp_s: Option<f64>,
-    /// When it was taken, where the camera's clock is this computer's.
+    /// Time of exposure, if the camera uses this computer's clock.
     pub taken: Option<Instant>,
 }
 
-/// What the bytes of a picture are.
+/// Format of an image's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A whole JPEG, if the camera sent one.
     Jpeg,
-    /// Not compressed.
+    /// Uncompressed.
     Raw(Raw),
-    /// A picture of a stream of H.264 (an access unit, annex B), which refers to those before it.
+    /// A frame of an H.264 stream (an access unit, annex B), which refers to earlier ones.
     H264 {
-        /// It refers to no other: a decoder can begin with it.
+        /// Whether it refers to no other frame, so that a decoder can begin with it.
         is_key: bool,
     },
 }
 
 impl Compressed {
-    /// A JPEG that came at this moment, with the stamp of its camera.
+    /// A JPEG that arrived at this moment, with the camera's time stamp.
     pub(crate) const fn jpeg(bytes: Vec<u8>, arrived: Instant, stamp_s: Option<f64>) -> Self {
         Self { format: Format::Jpeg, bytes, arrived, stamp_s, taken: None }
     }
 
-    /// It refers to no picture before it.
+    /// Whether it can be decoded without earlier images.
     pub const fn stands_alone(&self) -> bool {
         !matches!(self.format, Format::H264 { .. })
     }
 
-    /// Pixels of a picture that stands alone, on the thread that calls.
+    /// Decodes an independent image on the calling thread.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The fault of the image.
     pub fn decode(&self) -> Result<Picture, Damage> {
         match self.format {
             Format::Jpeg => jpeg::decode(&self.bytes),
@@ -63,25 +62,25 @@ impl Compressed {
     }
 }
 
-/// Gives pictures one after the other. It lives on one thread, which it may hold up until it is told to stop.
+/// Delivers a sequence of images. Runs on its own thread, which it may block until it is stopped.
 pub trait Source: Send {
-    /// The next picture; `None` where none came within about 0.1 s.
+    /// Returns the next image; `None` if none arrived within about 0.1 s.
     ///
     /// # Errors
-    /// Why there will be no more: the source is then opened again.
+    /// Why no more images will arrive: the source is then reopened.
     fn next(&mut self) -> Result<Option<Compressed>, Trouble>;
 
-    /// It has one picture only: that nothing moves is no fault.
+    /// Whether it has a single image, which is not a fault when it never changes.
     fn is_still(&self) -> bool {
         false
     }
 }
 
 impl Address {
-    /// Opens the source at this address. Takes up to some seconds.
+    /// Opens the source at this address. May take some seconds.
     ///
     /// # Errors
-    /// Why there is no picture.
+    /// Why there is no image.
     pub fn open(&self) -> Result<Box<dyn Source>, Trouble> {
         match self {
             Self::Http(endpoint) => Ok(Box::new(http::Http::open(endpoint)?)),
@@ -98,7 +97,7 @@ impl Address {
     }
 }
 
-/// Whether somebody still wants pictures.
+/// Whether images are still needed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Wanted(Arc<AtomicBool>);
 

@@ -1,12 +1,12 @@
-//! The pose of a marker on the camera, as a tracker reads it, without the tracker's noise.
+//! The pose of a marker on the camera, as read by a tracker, without the tracker's noise.
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
-/// What is farther away from the newest reading than noise comes from before a motion, m and rad.
+/// Readings farther than this from the newest one, m and rad, date from before a motion.
 const MOVED_M: f64 = 0.002;
 const MOVED_RAD: f64 = 0.012;
 
-/// The mean of a pose's readings without noise, the newest first, as far back as it has not moved.
+/// Returns the noise-free mean of a pose's readings, the newest first, as far back as the pose has not changed.
 pub fn steadied(mut newest_first: impl Iterator<Item = Isometry3<f64>>) -> Option<Isometry3<f64>> {
     let newest = newest_first.next()?;
     let is_here = |pose: &Isometry3<f64>| {
@@ -19,7 +19,7 @@ pub fn steadied(mut newest_first: impl Iterator<Item = Isometry3<f64>>) -> Optio
     for pose in newest_first.take_while(is_here) {
         count += 1.0;
         sum_m += pose.translation.vector;
-        // Two quaternions stand for each rotation.
+        // Two quaternions represent each rotation.
         let turn: Quaternion<f64> = pose.rotation.into_inner();
         sum += if turn.dot(&newest.rotation) < 0.0 { -turn } else { turn };
     }
@@ -39,7 +39,7 @@ mod tests {
         let turn = UnitQuaternion::from_scaled_axis(white(0.001));
         let pose =
             Isometry3::from_parts((at_m + miss_m).into(), turn * UnitQuaternion::from_euler_angles(2.0, 0.5, 3.0));
-        // The other quaternion of the same rotation, now and then.
+        // Uses the other quaternion of the same rotation from time to time.
         let flipped = UnitQuaternion::new_unchecked(-pose.rotation.into_inner());
         if noise.gaussian() > 0.0 { Isometry3::from_parts(pose.translation, flipped) } else { pose }
     }

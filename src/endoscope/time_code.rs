@@ -1,22 +1,21 @@
-//! A time that can be read from the picture itself: 64 black and white squares in its upper left corner.
+//! A time that can be read from the image itself: 64 black and white squares in its upper left corner.
 //!
-//! Two rows of 32 squares, the highest bit first: 52 bits of microseconds, then 12 check bits. An emulator draws it; who reads it from what is on a
-//! screen knows how long the picture was on its way.
+//! Two rows of 32 squares, the highest bit first: 52 bits of microseconds, then 12 check bits. An emulator draws it; a
+//! test that reads it from a screen obtains the delay of the image.
 
-/// Squares in a row.
 const COLUMNS: usize = 32;
 const ROWS: usize = 2;
 const TIME_BITS: u32 = 52;
 const CHECK_BITS: u32 = 12;
-/// Difference of brightness between black and white that is asked for.
+/// Minimum difference in brightness between black and white.
 const CONTRAST_LEAST: u32 = 64;
 
-/// Width and height of the code with squares of this side, px.
+/// Returns width and height of the code with squares of this side, px.
 pub const fn size_px(square_px: usize) -> [usize; 2] {
     [COLUMNS * square_px, ROWS * square_px]
 }
 
-/// Draws a time (us, below 2^52) into a picture of three bytes a pixel; what does not fit is left out.
+/// Draws a time (us, below 2^52) into an image with three bytes per pixel; squares outside the image are left out.
 pub fn draw(time_us: u64, square_px: usize, rgb: &mut [u8], width_px: usize) {
     let word = word(time_us);
     let [columns_px, rows_px] = size_px(square_px);
@@ -28,10 +27,10 @@ pub fn draw(time_us: u64, square_px: usize, rgb: &mut [u8], width_px: usize) {
     }
 }
 
-/// Reads the time (us); `brightness` gives that of a pixel at x and y. `None` where there is no sound code.
+/// Reads the time (us); `brightness` returns the brightness of the pixel at x and y. `None` if there is no valid code.
 pub fn read(square_px: usize, mut brightness: impl FnMut(usize, usize) -> u8) -> Option<u64> {
     let mut values = [0_u32; ROWS * COLUMNS];
-    // The middle of each square: at its edges the neighbours shine through.
+    // Sample the middle of each square: near its edges the neighbours blend in.
     let from = square_px / 4;
     let to = (square_px - square_px / 4).max(square_px / 4 + 1);
     for (place, value) in values.iter_mut().enumerate() {
@@ -59,7 +58,8 @@ fn word(time_us: u64) -> u64 {
     time_us << CHECK_BITS | check(time_us)
 }
 
-/// A cyclic check with the polynomial x^12 + x^11 + x^3 + x^2 + x + 1 (CRC-12), not zero for zero: an all-black picture is no time.
+/// A cyclic check with the polynomial x^12 + x^11 + x^3 + x^2 + x + 1 (CRC-12). It is not zero for zero, so that a
+/// black image is not a valid time.
 fn check(time_us: u64) -> u64 {
     let mut rest = 0xfff_u64;
     for bit in (0..TIME_BITS).rev() {

@@ -1,15 +1,15 @@
-//! Brightness, contrast and gamma of a picture, for the eye alone.
+//! Brightness, contrast and gamma of the displayed image.
 
 use crate::Picture;
 
-/// How bright a picture is shown. The default leaves it as it is.
+/// Display settings of an image. The default changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
-    /// Added to every value, as a share of white: -0.5 to 0.5.
+    /// Added to every value, as a fraction of white: -0.5 to 0.5.
     pub brightness: f64,
-    /// Every value's distance from middle grey is multiplied by this: 0.25 to 4.
+    /// Factor on every value's distance from middle grey: 0.25 to 4.
     pub contrast: f64,
-    /// Above 1 lifts what is dark and leaves black and white: 0.25 to 4.
+    /// Above 1 brightens dark values but keeps black and white: 0.25 to 4.
     pub gamma: f64,
 }
 
@@ -20,12 +20,12 @@ impl Default for Tone {
 }
 
 impl Tone {
-    /// It changes nothing.
+    /// Whether it changes nothing.
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The same within the limits of each; what is not a number counts as the default.
+    /// Returns the settings clamped to their limits; a value that is not a number becomes the default.
     #[must_use]
     pub fn limited(&self) -> Self {
         let plain = Self::default();
@@ -39,7 +39,7 @@ impl Tone {
         }
     }
 
-    /// What each value becomes.
+    /// Returns the output for each value.
     fn table(&self) -> [u8; 256] {
         let Self { brightness, contrast, gamma } = self.limited();
         std::array::from_fn(|value| {
@@ -48,7 +48,7 @@ impl Tone {
         })
     }
 
-    /// Changes a picture so.
+    /// Applies the settings to an image.
     pub fn apply(&self, picture: &mut Picture) {
         if self.is_plain() {
             return;

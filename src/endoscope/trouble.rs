@@ -1,52 +1,47 @@
-//! Why there is no picture, each cause with its cure.
+//! Why there is no image: each cause with its remedy.
 
 use std::io::{self, ErrorKind};
 
-/// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Trouble {
-    #[error("nobody listens at {place}")]
+    #[error("no response from {place}")]
     NobodyListens { place: String },
     #[error("{place} cannot be reached")]
     Unreachable { place: String },
-    /// No name server knows it.
-    #[error("no computer has the name in {place}")]
+    #[error("unknown host name in {place}")]
     NoSuchName { place: String },
     #[error("{place} answers with the status {status}")]
     Refused { place: String, status: u16 },
     #[error("{place} sends {found}, not {wanted}")]
     OtherFormat { place: String, found: String, wanted: &'static str },
-    /// Not HTTP, or beyond a limit.
-    #[error("{place} sends what cannot be read: {reason}")]
+    /// The response is not HTTP or exceeds a limit.
+    #[error("{place} sends an unreadable response: {reason}")]
     Unreadable { place: String, reason: String },
     #[error("{place} is open but sends nothing")]
     Silent { place: String },
-    /// The other end has closed the connection.
-    #[error("{place} has closed the connection")]
+    #[error("{place} closed the connection")]
     Closed { place: String },
-    #[error("{path} is not there")]
+    #[error("{path} does not exist")]
     NoCamera { path: String },
     #[error("{path} is in use by another program")]
     Busy { path: String },
-    #[error("this user may not use {path}")]
+    #[error("this user has no permission to use {path}")]
     NoPermission { path: String },
-    #[error("{path} is no camera")]
+    #[error("{path} is not a camera")]
     NotCamera { path: String },
-    #[error("{path} gives no {wanted}, but {offered}")]
+    #[error("{path} does not offer {wanted}, only {offered}")]
     NoSuchFormat { path: String, wanted: String, offered: String },
-    #[error("{path} has no pictures of {}x{}, but {offered}", .wanted[0], .wanted[1])]
+    #[error("{path} does not offer images of {}x{}, only {offered}", .wanted[0], .wanted[1])]
     NoSuchSize { path: String, wanted: [u32; 2], offered: String },
-    /// The USB has not room enough for the stream.
-    #[error("{path} finds no room on its USB line")]
+    /// The USB bus lacks bandwidth for the stream.
+    #[error("{path} lacks bandwidth on its USB bus")]
     NoBandwidth { path: String },
     #[error("{path} was unplugged")]
     Unplugged { path: String },
-    #[error("{path} is open but gives no picture")]
+    #[error("{path} is open but sends no images")]
     NoPictures { path: String },
-    /// What the driver of a camera says.
     #[error("{path}: {reason}")]
     Camera { path: String, reason: String },
-    /// This program was built without what it takes.
     #[error("this program was built without {what}")]
     NotBuilt { what: &'static str },
     #[error("{path}: {reason}")]
@@ -56,7 +51,7 @@ pub enum Trouble {
 }
 
 impl Trouble {
-    /// What to do about it, in one sentence.
+    /// Returns the remedy, in one sentence.
     pub fn cure(&self) -> &'static str {
         match self {
             Self::NobodyListens { .. } => {
@@ -93,7 +88,7 @@ impl Trouble {
             }
             Self::NoSuchSize { .. } => "Give a size that the camera has, in the address in the rig file.",
             Self::NoBandwidth { .. } => {
-                "Plug it into a port of its own, without a hub, or give a smaller size or rate in the address."
+                "Plug it into its own USB port, without a hub, or set a smaller size or rate in the address."
             }
             Self::Unplugged { .. } => "Plug the camera in again: it is opened again by itself.",
             Self::NoPictures { .. } => {
@@ -108,7 +103,7 @@ impl Trouble {
         }
     }
 
-    /// From an error of a connection.
+    /// Converts an error of a connection.
     pub(crate) fn of_network(place: &str, error: &io::Error) -> Self {
         let place = place.to_owned();
         match error.kind() {

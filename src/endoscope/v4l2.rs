@@ -1,5 +1,6 @@
-//! Cameras and capture cards of this computer, through the kernel's `Video4Linux2`: motion JPEG, YUYV and NV12, in buffers that are shared with the
-//! driver. The newest picture wins; what the driver has filled before is given back unseen.
+//! Cameras and capture cards of this computer, through the kernel's `Video4Linux2`: motion JPEG, YUYV and NV12, in
+//! buffers that are shared with the driver. Only the newest image is used; older buffers are returned to the driver
+//! unread.
 
 mod kernel;
 mod layout;
@@ -24,20 +25,21 @@ use crate::{
     colour::{Matrix, Range},
 };
 
-/// Buffers that are asked for, and the least that a stream needs.
+/// Number of buffers requested, and minimum for a stream.
 const BUFFERS: u32 = 4;
 const BUFFERS_LEAST: u32 = 2;
-/// Nothing for this long: the camera is given up and opened again. The first picture of some takes more than a second.
+/// After this time without images the camera is closed and reopened. Some cameras take more than a second for the first
+/// image.
 const SILENT: Duration = Duration::from_secs(4);
 const PATIENCE: Duration = Duration::from_millis(100);
-/// After a wait that ended without a picture.
+/// Pause after a wait that ended without an image.
 const NAP: Duration = Duration::from_millis(5);
-/// Most formats or sizes that a driver is asked for.
+/// Maximum number of formats or sizes queried from a driver.
 const LISTED_MOST: u32 = 64;
-/// A stamp that is older than this, or of the future, is no time of this clock.
+/// A time stamp that is older than this, or in the future, does not come from this clock.
 const STAMP_MOST: Duration = Duration::from_secs(5);
 
-/// A camera that streams.
+/// A camera that is streaming.
 struct V4l2 {
     kernel: Box<dyn Kernel>,
     place: String,
@@ -52,7 +54,7 @@ pub(crate) fn open(path: &Path, wanted: Capture) -> Result<Box<dyn Source>, Trou
     Ok(Box::new(V4l2::start(Box::new(device), place, wanted)?))
 }
 
-/// The trouble behind an error of the kernel.
+/// Converts an error of the kernel.
 fn told(place: &str, error: &Error, doing: &str) -> Trouble {
     let path = place.to_owned();
     match error.raw_os_error() {
@@ -64,13 +66,13 @@ fn told(place: &str, error: &Error, doing: &str) -> Trouble {
     }
 }
 
-/// Four letters, as drivers name formats.
+/// Returns the four letters with which drivers name a format.
 fn name_of(pixels: u32) -> String {
     pixels.to_le_bytes().iter().map(|byte| if byte.is_ascii_graphic() { char::from(*byte) } else { '?' }).collect()
 }
 
 impl Pixels {
-    /// As drivers know it: motion JPEG under two names.
+    /// The driver's names: motion JPEG has two.
     const fn names(self) -> &'static [&'static [u8; 4]] {
         match self {
             Self::Mjpeg => &[b"MJPG", b"JPEG"],
@@ -80,7 +82,7 @@ impl Pixels {
     }
 }
 
-/// In this order they are taken: motion JPEG gives the most pictures a second over USB.
+/// In order of preference: motion JPEG allows the highest frame rate over USB.
 const PREFERRED: [Pixels; 3] = [Pixels::Mjpeg, Pixels::Nv12, Pixels::Yuyv];
 
 impl V4l2 {
@@ -93,7 +95,7 @@ impl V4l2 {
         Ok(Self { kernel, place, format, heard: Instant::now() })
     }
 
-    /// The next buffer that is filled: its number, its bytes that count, and its stamp.
+    /// Returns the next filled buffer: its number, its used bytes, and its time stamp.
     fn take(&mut self) -> Result<Option<Block>, Trouble> {
         let mut buffer = Block::of(DQBUF).with(at::BUF_TYPE, CAPTURE).with(at::BUF_MEMORY, MEMORY_MMAP);
         match self.kernel.ioctl(DQBUF, &mut buffer.0) {
@@ -103,7 +105,7 @@ impl V4l2 {
         }
     }
 
-    /// Gives a buffer back to the driver.
+    /// Returns a buffer to the driver.
     fn give(&mut self, index: u32) -> Result<(), Trouble> {
         let mut buffer = queued(index);
         self.kernel.ioctl(QBUF, &mut buffer.0).map_err(|error| self.lost(&error))
@@ -117,11 +119,11 @@ impl V4l2 {
         }
     }
 
-    /// The newest picture that is there; older ones go back.
+    /// Returns the newest available image; older ones are returned to the driver.
     fn newest(&mut self) -> Result<Option<Compressed>, Trouble> {
         let mut newest: Option<Block> = None;
         while let Some(buffer) = self.take()? {
-            // What came is heard, even if it cannot be shown.
+            // Any data counts as a sign of life, even an image that cannot be shown.
             self.heard = Instant::now();
             let is_whole = buffer.get(at::BUF_FLAGS) & DAMAGED == 0 && buffer.get(at::BUF_USED) > 0;
             let older = if is_whole { newest.replace(buffer) } else { Some(buffer) };
@@ -132,7 +134,7 @@ impl V4l2 {
         let Some(buffer) = newest else { return Ok(None) };
         let mut bytes = self.kernel.copy(buffer.get(0) as usize, buffer.get(at::BUF_USED) as usize);
         if self.format == Format::Jpeg {
-            // Some drivers fill the buffer up.
+            // Some drivers pad the buffer.
             let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |at| at + 1);
             bytes.truncate(end);
         }
@@ -141,7 +143,7 @@ impl V4l2 {
         Ok(Some(Compressed { format: self.format, bytes, arrived: self.heard, stamp_s: None, taken }))
     }
 
-    /// When the driver had the picture, where it stamps by the clock that is also ours.
+    /// Returns when the driver received the image, if its stamps use our clock.
     fn taken(&self, buffer: &Block) -> Option<Instant> {
         if buffer.get(at::BUF_FLAGS) & CLOCK_MASK != CLOCK_MONOTONIC {
             return None;
@@ -181,7 +183,7 @@ fn queued(index: u32) -> Block {
     Block::of(QBUF).with(0, index).with(at::BUF_TYPE, CAPTURE).with(at::BUF_MEMORY, MEMORY_MMAP)
 }
 
-/// A camera on its way to stream.
+/// A camera that is being opened.
 struct Opening<'a> {
     kernel: &'a mut dyn Kernel,
     place: &'a str,
@@ -192,7 +194,7 @@ impl Opening<'_> {
         self.kernel.ioctl(request, &mut block.0).map_err(|error| told(self.place, &error, doing))
     }
 
-    /// It is a camera, and one that streams.
+    /// Checks that the device is a camera that can stream.
     fn check(&mut self) -> Result<(), Trouble> {
         let path = || self.place.to_owned();
         let mut about = Block::of(QUERYCAP);
@@ -219,7 +221,7 @@ impl Opening<'_> {
         Ok(())
     }
 
-    /// A format that both sides know.
+    /// Selects a format that both sides support.
     fn choose(&mut self, wanted: Option<Pixels>) -> Result<(Pixels, u32), Trouble> {
         let mut offered = Vec::new();
         for index in 0..LISTED_MOST {
@@ -273,7 +275,8 @@ impl Opening<'_> {
         })
     }
 
-    /// A camera without this has one rate, and takes the nearest one that it has; the screen shows what comes.
+    /// Requests a rate. A camera without this setting has a fixed rate; others take the nearest one that they have. The
+    /// screen shows the actual rate.
     fn set_rate(&mut self, rate_hz: Option<u32>) {
         let Some(rate_hz) = rate_hz else { return };
         let block = Block::of(S_PARM).with(0, CAPTURE).with(at::PARM_NUMERATOR, 1);
@@ -281,7 +284,7 @@ impl Opening<'_> {
         self.kernel.ioctl(S_PARM, &mut block.0).ok();
     }
 
-    /// The sizes that a driver has for a format.
+    /// Returns the sizes that a driver offers for a format.
     fn sizes(&mut self, code: u32) -> String {
         let mut sizes = Vec::new();
         for index in 0..LISTED_MOST {
@@ -300,7 +303,7 @@ impl Opening<'_> {
         listed(sizes.into_iter())
     }
 
-    /// Takes buffers, hands them to the driver, and lets it fill them.
+    /// Allocates buffers, passes them to the driver and starts the stream.
     fn stream(&mut self) -> Result<(), Trouble> {
         let block = Block::of(REQBUFS).with(0, BUFFERS).with(at::REQ_TYPE, CAPTURE);
         let mut block = block.with(at::REQ_MEMORY, MEMORY_MMAP);
@@ -330,13 +333,13 @@ impl Opening<'_> {
     }
 }
 
-/// A few names one after the other.
+/// Joins a few names.
 fn listed(names: impl Iterator<Item = String>) -> String {
     let names: Vec<String> = names.take(12).collect();
     if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
 }
 
-/// What the numbers of its pictures mean, as the driver says it or its colour space implies.
+/// Returns the interpretation of the colours, as reported by the driver or implied by its colour space.
 fn colours(format: &Block) -> Colours {
     let space = format.get(at::FMT_SPACE);
     let is_709 = match format.get(at::FMT_ENCODING) {

@@ -1,16 +1,18 @@
-//! What came and is not decoded yet: of pictures that stand alone the newest, of a stream all since one that does.
+//! Received images that are not decoded yet: the newest of independent images, or all frames of a stream since a key
+//! frame.
 
 use std::collections::VecDeque;
 
 use crate::{Compressed, Format};
 
-/// Most pictures of a stream that wait, two seconds of it: a decoder that is farther behind begins again.
+/// Maximum number of waiting frames, two seconds of a stream: a decoder that is further behind starts again at a key
+/// frame.
 const MOST: usize = 60;
 
 #[derive(Debug)]
 pub(crate) struct Waiting {
     queue: VecDeque<Compressed>,
-    /// Until a picture comes that refers to no other.
+    /// Set until a key frame arrives.
     skips: bool,
 }
 
@@ -24,7 +26,7 @@ impl Waiting {
     pub(crate) fn push(&mut self, compressed: Compressed) {
         match compressed.format {
             Format::Jpeg | Format::Raw(_) | Format::H264 { is_key: true } => {
-                // Nothing before it is needed, and it is newer.
+                // A newer image that needs no other makes all earlier ones unnecessary.
                 self.queue.clear();
                 self.skips = false;
             }

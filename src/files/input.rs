@@ -1,4 +1,5 @@
-//! Opening and reading: a regular file of a plausible size, or a clear refusal. Nothing here waits for ever or fills the memory.
+//! Opening and reading regular files of a plausible size. Everything else is refused with a clear message, so that no
+//! call blocks for ever or fills the memory.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -8,47 +9,47 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Most bytes of a recording or a data set: four hours of motion and force on three axes at 1 kHz.
+/// Maximum size of a recording or data set, in bytes: four hours of motion and force on three axes at 1 kHz.
 pub const TABLE_MAX: u64 = 1 << 30;
-/// Most bytes of a trained network; the largest that can be trained has a fifth of it.
+/// Maximum size of a trained network, in bytes: five times that of the largest network that can be trained.
 pub const MODEL_MAX: u64 = 64 << 20;
-/// Most bytes of a file that a person writes: rig, scene, settings, calibration.
+/// Maximum size of a file written by a person (rig, scene, settings, calibration), in bytes.
 pub const CONFIG_MAX: u64 = 1 << 20;
-/// Most bytes of one line of a table. What has no line breaks is no table.
+/// Maximum length of a line of a table, in bytes. A file without line breaks is not a table.
 const LINE_MAX: usize = 1 << 20;
-/// A pipe may be silent for so long before its writer counts as dead.
+/// A pipe that stays silent for this long counts as abandoned by its writer.
 const PIPE_TIMEOUT: Duration = Duration::from_secs(30);
 const NAP: Duration = Duration::from_millis(2);
 
-/// All bytes of a regular file.
+/// Returns all bytes of a regular file.
 ///
 /// # Errors
-/// No such file, not a regular one, or more than `most` bytes.
+/// The file does not exist, is not a regular file, or has more than `most` bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let (file, metadata) = open(path, false)?;
     if metadata.len() > most {
         return Err(too_large(most));
     }
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
-    // A file may grow while it is read.
+    // Limits the bytes that are read, because the file may grow meanwhile.
     if file.take(most + 1).read_to_end(&mut bytes)? as u64 > most {
         return Err(too_large(most));
     }
     Ok(bytes)
 }
 
-/// The same as text.
+/// Returns the text of a regular file.
 ///
 /// # Errors
-/// Those of [`read`], and bytes that are not UTF-8.
+/// The errors of [`read`], and bytes that are not UTF-8.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("rig.toml");
 /// std::fs::write(&path, "rate_hz = 1000.0")?;
 /// assert_eq!(nima_files::read_text(&path, 100)?, "rate_hz = 1000.0");
-/// assert!(nima_files::read_text(&path, 10).is_err(), "larger than the most that is read");
-/// assert!(nima_files::read_text(folder.path(), 100).is_err(), "a folder is no file");
+/// assert!(nima_files::read_text(&path, 10).is_err(), "larger than the limit");
+/// assert!(nima_files::read_text(folder.path(), 100).is_err(), "a folder is not a file");
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
@@ -56,11 +57,11 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read(path, most)?).map_err(no_text)
 }
 
-/// Opens a table (CSV) to be read as a stream: a regular file, or a pipe as in `<(zcat x.csv.gz)` and `/dev/stdin`.
+/// Opens a table (CSV) for reading as a stream: a regular file, or a pipe such as `<(zcat x.csv.gz)` or `/dev/stdin`.
 ///
 /// # Errors
-/// No such file, neither file nor pipe, or more than [`TABLE_MAX`] bytes. Reading it ends with an error at [`TABLE_MAX`], at a
-/// line of more than 1 MiB, and at a pipe that nobody writes to or that is silent for 30 s.
+/// The path does not exist, is neither a file nor a pipe, or has more than [`TABLE_MAX`] bytes. Reading fails at
+/// [`TABLE_MAX`], at a line of more than 1 MiB, and at a pipe that has no writer or is silent for 30 s.
 ///
 /// ```
 /// use std::io::Read;
@@ -82,19 +83,18 @@ pub fn open_table(path: &Path) -> io::Result<Input> {
     Ok(Input { file, pipe: pipe.then_some(PIPE_TIMEOUT), taken: 0, line: 0 })
 }
 
-/// Opens a regular file that is read in parts, wherever they stand; gives its size too, which may be any.
+/// Opens a regular file of any size for reading at arbitrary positions. Returns the file and its size in bytes.
 ///
 /// # Errors
-/// No such file, or not a regular one.
+/// The path does not exist or is not a regular file.
 pub fn open_file(path: &Path) -> io::Result<(File, u64)> {
     open(path, false).map(|(file, metadata)| (file, metadata.len()))
 }
 
-/// A table that is being read.
 #[derive(Debug)]
 pub struct Input {
     file: File,
-    /// How long to wait for more, where it is a pipe.
+    /// Timeout for more data; only for a pipe.
     pipe: Option<Duration>,
     taken: u64,
     /// Bytes since the last line break.
@@ -124,13 +124,13 @@ impl Read for Input {
 }
 
 impl Input {
-    /// A pipe is opened without waiting, so that it is asked again until something comes.
+    /// Pipes are opened in non-blocking mode; this retries the read until data arrive.
     fn read_pipe(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
         let begin = Instant::now();
         loop {
             match self.file.read(buffer) {
                 Ok(0) if self.taken == 0 && !buffer.is_empty() => {
-                    return Err(refusal("it is a pipe that nobody writes to; start the writer first, or name a file"));
+                    return Err(refusal("no process writes to this pipe; start the writer first, or name a file"));
                 }
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
                     if begin.elapsed() > timeout {
@@ -144,12 +144,12 @@ impl Input {
     }
 }
 
-/// Opens without waiting and without touching what is no file: opening alone can start a tape or a watchdog.
+/// Opens without blocking, and only after checking the kind of file: opening alone can start a tape or a watchdog.
 pub(super) fn open(path: &Path, pipes: bool) -> io::Result<(File, Metadata)> {
     let check = |metadata: &Metadata| match what_it_is(metadata) {
         None => Ok(()),
         Some(_) if pipes && is_pipe(metadata) => Ok(()),
-        Some("a pipe") => Err(refusal("it is a pipe; write what comes through it to a file and name that")),
+        Some("a pipe") => Err(refusal("it is a pipe; save its output to a file and name that file")),
         Some(what) => Err(refusal(&format!("it is {what}; name a file"))),
     };
     check(&fs::metadata(path)?)?;
@@ -158,13 +158,13 @@ pub(super) fn open(path: &Path, pipes: bool) -> io::Result<(File, Metadata)> {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK | libc::O_NOCTTY);
     let file = options.open(path)?;
-    // It may have been exchanged since.
+    // The path may have been replaced since the first check.
     let metadata = file.metadata()?;
     check(&metadata)?;
     Ok((file, metadata))
 }
 
-/// What stands there, in words, where it is no regular file.
+/// Describes what is at the path if it is not a regular file.
 pub(super) fn what_it_is(metadata: &Metadata) -> Option<&'static str> {
     if metadata.is_file() {
         None
@@ -203,7 +203,7 @@ fn too_large(most: u64) -> io::Error {
     let size = if most >= 1 << 20 { format!("{} MiB", most >> 20) } else { format!("{most} bytes") };
     io::Error::new(
         io::ErrorKind::FileTooLarge,
-        format!("it is larger than {size}, the most that is read; is it the right file?"),
+        format!("it is larger than the limit of {size}; check that this is the right file"),
     )
 }
 

@@ -2,7 +2,7 @@ use std::{fs, io::Read as _, sync::mpsc, thread, time::Duration};
 
 use super::*;
 
-/// What `work` gives; a test that hangs fails instead.
+/// Returns the result of `work`; a test that hangs fails instead.
 fn soon<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || sender.send(work()));
@@ -13,13 +13,13 @@ fn soon<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
 fn what_is_no_plain_file_of_a_plausible_size_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
-    // A hole: nothing is on the disk, and it takes a gigabyte of memory where it is read.
+    // A sparse file: it uses no disk space, but reading it would take gigabytes of memory.
     fs::File::create(place("large")).unwrap().set_len(2 << 30).unwrap();
     fs::write(place("bytes"), [0xff; 8]).unwrap();
     let none = fs::File::open(place("none")).unwrap_err().to_string();
     let cases = [
         (folder.path().to_owned(), "it is a folder"),
-        (place("large"), "it is larger than 1 MiB"),
+        (place("large"), "it is larger than the limit of 1 MiB"),
         (place("bytes"), "it is not UTF-8 text"),
         (place("none"), none.as_str()),
     ];
@@ -33,7 +33,7 @@ fn what_is_no_plain_file_of_a_plausible_size_is_refused_at_once() {
 
 #[test]
 fn a_file_that_has_no_size_of_its_own_is_read_up_to_the_limit() {
-    // Files of the kernel say that they are empty.
+    // The kernel reports a size of zero for its own files.
     let path = Path::new("/proc/self/maps");
     if path.exists() {
         assert!(read(path, CONFIG_MAX).unwrap().len() > 100);
@@ -53,7 +53,6 @@ fn a_line_without_an_end_is_refused_before_it_fills_the_memory() {
     assert!(open_table(&path).unwrap_err().to_string().contains("1024 MiB"));
 }
 
-/// What only Unix has in its folders.
 #[cfg(unix)]
 mod unix {
     use std::{io::Write as _, os::unix::net::UnixListener, path::PathBuf, process::Command};
@@ -90,14 +89,14 @@ mod unix {
         };
         let to = path.clone();
         assert!(soon(move || all(to)).unwrap_err().to_string().contains("nobody writes"));
-        // Open for both, so that the writer does not wait for the reader.
+        // Opened for reading and writing, so that the writer does not wait for a reader.
         let mut writer = fs::OpenOptions::new().read(true).write(true).open(&path).unwrap();
         writer.write_all(b"a,b\n1,").unwrap();
         let to = path.clone();
         let reader = thread::spawn(move || all(to));
         thread::sleep(Duration::from_millis(50));
         writer.write_all(b"2\n").unwrap();
-        // The reader ends once it has taken everything and nobody holds the other end.
+        // The reader ends once it has read everything and no process holds the other end.
         thread::sleep(Duration::from_millis(50));
         drop(writer);
         assert_eq!(soon(move || reader.join().unwrap()).unwrap(), "a,b\n1,2\n");

@@ -1,7 +1,8 @@
-//! Files that a user names. Read with checks and limits ([`read`], [`open_table`], [`open_file`]), written so that nothing half-written is ever
-//! seen ([`write_atomically`]; [`write_private`] for keys), quoted in messages at a bounded length ([`quoted`]).
+//! Files that a user names. They are read with checks and limits ([`read`], [`open_table`], [`open_file`]), written
+//! atomically ([`write_atomically`]; [`write_private`] for keys), and quoted in messages at a bounded length
+//! ([`quoted`]).
 //!
-//! Bad input is an `io::Error` that says what is wrong and what to do; the caller adds which file it was.
+//! Bad input is an `io::Error` that says what is wrong and what to do; the caller adds the name of the file.
 
 mod input;
 mod output;

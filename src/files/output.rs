@@ -1,4 +1,4 @@
-//! Writing: a temporary file first, then a rename. Only a regular file is ever replaced; a link is followed.
+//! Writes to a temporary file first, then renames it. Only a regular file is ever replaced; a link is followed.
 
 use std::{
     fs::{self, File, Metadata},
@@ -16,17 +16,17 @@ use tempfile::NamedTempFile;
 
 use super::input::{open, refusal, what_it_is};
 
-/// Another program may have a file open for so long before it cannot be replaced.
+/// How long another program may keep a file open before its replacement fails.
 #[cfg(windows)]
 const HELD_MAX: Duration = Duration::from_millis(500);
 
-/// Writes `path` by `fill`; on any error the old file (or none) stays as it was.
+/// Writes `path` with `fill`. On any error the old file, if any, is unchanged.
 ///
-/// A file that is there is replaced and keeps its mode and, where the system lets us, its owner; a new one gets the usual mode. A
-/// link is followed: the file that it leads to is replaced, beside itself.
+/// An existing file keeps its mode and, where the system allows it, its owner; a new file gets the usual mode. If
+/// `path` is a link, its target is replaced.
 ///
 /// # Errors
-/// A folder, pipe, socket or device at `path`, a link to nothing, and whatever the system says while writing.
+/// `path` is a folder, pipe, socket, device or dangling link, or writing fails.
 ///
 /// ```
 /// use std::io::{Error, Write};
@@ -48,19 +48,19 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
     target.replace(target.old.as_ref(), fill)
 }
 
-/// Makes `to` a copy of the regular file `from`, with its mode and, where the system lets us, its owner.
+/// Copies the regular file `from` to `to`, with its mode and, where the system allows it, its owner.
 ///
 /// # Errors
-/// Those of [`write_atomically`]; no such file, or not a regular one.
+/// The errors of [`write_atomically`]; `from` does not exist or is not a regular file.
 pub fn copy_atomically(from: &Path, to: &Path) -> io::Result<()> {
     let (mut old, metadata) = open(from, false)?;
     Target::at(to)?.replace(Some(&metadata), |file| io::copy(&mut old, file).map(drop))
 }
 
-/// Writes a new file that its owner alone can read, as a key needs it.
+/// Writes a new file that only its owner can read, for keys.
 ///
 /// # Errors
-/// A file that is there already, and whatever the system says while writing.
+/// The file exists already, or writing fails.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -72,17 +72,19 @@ pub fn copy_atomically(from: &Path, to: &Path) -> io::Result<()> {
 /// ```
 pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    // A temporary file is its owner's alone from the beginning.
+    // The temporary file is private to its owner from the beginning.
     let mut file = NamedTempFile::new_in(folder)?;
     file.write_all(text.as_bytes())?;
     file.as_file().sync_all()?;
     file.persist_noclobber(path).map(drop).map_err(|error| error.error)
 }
 
-/// Whether [`write_atomically`] could replace `path` without destroying one of the `inputs`; before the work that is to be written.
+/// Checks whether [`write_atomically`] could replace `path` without destroying one of the `inputs`. Call it before the
+/// work whose result is to be written.
 ///
 /// # Errors
-/// What [`write_atomically`] refuses, a folder that is not there, and an input that is the same file, also by another name.
+/// Everything that [`write_atomically`] refuses, a missing folder, and an input that is the same file, also under
+/// another name.
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -103,7 +105,7 @@ pub fn check_output(path: &Path, inputs: &[&Path]) -> io::Result<()> {
     Ok(())
 }
 
-/// Where a file is to stand, links followed, and what stands there now.
+/// The final path of a file, with links followed, and the existing file.
 struct Target {
     path: PathBuf,
     old: Option<Metadata>,
@@ -119,13 +121,13 @@ impl Target {
         };
         let is_link = here.is_symlink();
         let nothing = |error: io::Error| match error.kind() {
-            io::ErrorKind::NotFound => refusal("it is a link to a file that is not there; name that file itself"),
+            io::ErrorKind::NotFound => refusal("it is a link to a file that does not exist; name that file itself"),
             _ => error,
         };
-        // The link is followed by the system first, which knows links of strangers that may not be followed.
+        // Let the system follow the link first: it forbids following links of other users in shared folders.
         let old = if is_link { fs::metadata(path).map_err(nothing)? } else { here };
         if let Some(what) = what_it_is(&old) {
-            return Err(refusal(&format!("{what} is there and is left as it is; choose another name")));
+            return Err(refusal(&format!("{what} exists and is never replaced; choose another name")));
         }
         let path = if is_link { path.canonicalize()? } else { path.to_owned() };
         Ok(Self { path, old: Some(old) })
@@ -151,13 +153,13 @@ fn put(file: NamedTempFile, path: &Path) -> io::Result<()> {
     file.persist(path).map(drop).map_err(|error| error.error)
 }
 
-/// Who looks at a new file (a scanner for viruses, an indexer) or reads the old one may keep it from being replaced for a moment.
+/// A virus scanner, an indexer or a reader of the old file may block the replacement for a moment.
 #[cfg(windows)]
 fn put(file: NamedTempFile, path: &Path) -> io::Result<()> {
     let file = file.into_temp_path();
     let begin = Instant::now();
     loop {
-        // Not by `persist`, which never replaces a file that somebody has open.
+        // `persist` never replaces a file that another process has open.
         match fs::rename(&file, path) {
             Err(error) if is_held(&error) && begin.elapsed() < HELD_MAX => thread::sleep(HELD_MAX / 50),
             done => return done,
@@ -171,7 +173,7 @@ fn is_held(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION)
 }
 
-/// For others as unreadable as what it is like, from the beginning; else as any new file, by the user's umask.
+/// A replacement is as private as the file it replaces, from the beginning; a new file follows the user's umask.
 #[cfg(unix)]
 fn temporary(folder: &Path, like: Option<&Metadata>) -> io::Result<NamedTempFile> {
     use std::os::unix::fs::PermissionsExt as _;
@@ -179,7 +181,7 @@ fn temporary(folder: &Path, like: Option<&Metadata>) -> io::Result<NamedTempFile
     tempfile::Builder::new().permissions(fs::Permissions::from_mode(mode)).tempfile_in(folder)
 }
 
-/// Owner first: a change of owner takes bits of the mode away.
+/// Changes the owner first: a change of owner clears bits of the mode.
 #[cfg(unix)]
 fn keep(file: &File, like: &Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};
@@ -187,13 +189,13 @@ fn keep(file: &File, like: &Metadata) -> io::Result<()> {
     let mut mode = like.mode() & 0o777;
     if (ours.uid(), ours.gid()) != (like.uid(), like.gid()) && fchown(file, Some(like.uid()), Some(like.gid())).is_err()
     {
-        // Ours now: what its group was allowed is not for another group.
+        // The file now belongs to our group, so the old group's rights must not apply.
         mode &= 0o707;
     }
     file.set_permissions(fs::Permissions::from_mode(mode))
 }
 
-/// An ordinary file: one that is marked as temporary would stay so under its new name.
+/// Must not be marked as temporary: the mark would remain after the rename.
 #[cfg(not(unix))]
 fn temporary(folder: &Path, _: Option<&Metadata>) -> io::Result<NamedTempFile> {
     tempfile::Builder::new().make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))

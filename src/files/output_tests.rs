@@ -21,7 +21,7 @@ fn a_folder_is_refused_and_an_input_is_found_however_it_is_written() {
     let input = folder.path().join("poses.csv");
     fs::write(&input, "x").unwrap();
     let refused = |path: &Path| check_output(path, &[&input]).unwrap_err().to_string();
-    assert!(refused(folder.path()).contains("a folder is there"));
+    assert!(refused(folder.path()).contains("a folder exists"));
     assert!(write(folder.path(), "x").is_err());
     fs::create_dir(folder.path().join("sub")).unwrap();
     assert!(refused(&folder.path().join("sub/../poses.csv")).contains("is the input"));
@@ -81,7 +81,7 @@ mod unix {
         symlink(place("none"), place("to nothing")).unwrap();
         symlink(place("pipe"), place("to a pipe")).unwrap();
         let mut cases = vec!["pipe", "socket", "folder", "to nothing", "to a pipe"];
-        // Only root can make a device: a copy of /dev/null, so that the real one is never at stake.
+        // Only root can create a device. A copy of /dev/null, so that the real one is never at risk.
         if run("sh", &["-c", &format!("mknod '{}' c 1 3 2>/dev/null", place("device").display())]) {
             cases.push("device");
         }
@@ -91,7 +91,7 @@ mod unix {
             for error in [write(&place(name), "x"), check_output(&place(name), &[])].map(Result::unwrap_err) {
                 let words = error.to_string();
                 assert!(
-                    words.contains("left as it is") || words.contains("a link to a file that is not there"),
+                    words.contains("never replaced") || words.contains("a link to a file that does not exist"),
                     "{words}"
                 );
             }
@@ -143,7 +143,7 @@ mod unix {
         for name in ["input", "link", "hard link"] {
             let error = check_output(&place(name), &[&other, &input]).unwrap_err().to_string();
             assert!(error.contains("is the input") && error.contains("itself"), "{name}: {error}");
-            // And the other way round: the input is named by a link.
+            // The same with the roles swapped: the input is named by a link.
             check_output(&input, &[&other, &place(name)]).unwrap_err();
         }
         check_output(&other, &[&input]).unwrap();

@@ -1,25 +1,25 @@
-//! Other people's text inside our messages.
+//! Quoting text of other origin inside our messages.
 
 use std::fmt::Write as _;
 
-/// Most characters of a file, a name or a device's answer that a message repeats.
+/// Maximum number of characters of a file, a name or a device's answer that a message repeats.
 pub const QUOTE: usize = 80;
-/// Most characters of what is longer by nature: a list of columns, a parser's complaint.
+/// Maximum number of characters of longer text, such as a list of columns or a parser's message.
 pub const PASSAGE: usize = 300;
 
-/// A text as a message may repeat it: [`QUOTE`] characters at most, control characters escaped.
+/// Returns a text as a message may repeat it: at most [`QUOTE`] characters, control characters escaped.
 pub fn quoted(text: &str) -> String {
     shortened(text, QUOTE)
 }
 
-/// The same with another limit. What is cut off is replaced by `...` and the size of the whole.
+/// The same with another limit. The rest is replaced by `...` and the size of the whole text.
 pub fn shortened(text: &str, most: usize) -> String {
     let mut short = String::new();
-    // Looks at no more than `most` characters: the text may be a whole file.
+    // Reads at most `most` characters: the text may be a whole file.
     for character in text.chars().take(most) {
         match character {
             '"' | '\'' | '\\' => short.push(character),
-            // What a terminal would obey (colours, line breaks, a change of direction) is told, not done.
+            // Escapes what a terminal would interpret (colours, line breaks, changes of direction).
             _ => short.extend(character.escape_debug()),
         }
     }
@@ -30,7 +30,7 @@ pub fn shortened(text: &str, most: usize) -> String {
     short
 }
 
-/// A cell of a CSV file, quoted where it needs that.
+/// Returns a CSV cell, quoted if necessary.
 pub fn csv_cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

@@ -1,4 +1,4 @@
-//! Settings in TOML, read into a type of its own, with the place of a mistake.
+//! Parses settings in TOML into a typed value and reports the position of a mistake.
 
 use std::{fmt, ops::Range};
 
@@ -8,7 +8,7 @@ use toml::{
     de::{DeTable, DeValue, Deserializer, Error},
 };
 
-/// Why a text is not what it should be: what, and where in it.
+/// Why settings could not be parsed: the mistake and its position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
     message: String,
@@ -16,20 +16,18 @@ pub struct Misfit {
 }
 
 impl Misfit {
-    /// What is wrong, in one line.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// Which line of `text`, which was read, it is about, from 1.
+    /// Returns the line, from 1, of the mistake in `text`, which must be the text that was parsed.
     #[must_use]
     pub fn line(&self, text: &str) -> usize {
         let start = self.span.as_ref().map_or(0, |span| span.start.min(text.len()));
         text.bytes().take(start).filter(|byte| *byte == b'\n').count() + 1
     }
 
-    /// What is wrong, and where in the text.
     #[must_use]
     pub fn new(message: impl fmt::Display, span: Option<Range<usize>>) -> Self {
         Self { message: message.to_string().lines().collect::<Vec<_>>().join(" "), span }
@@ -50,10 +48,10 @@ impl From<Error> for Misfit {
     }
 }
 
-/// Reads a text of settings.
+/// Parses settings.
 ///
 /// # Errors
-/// [`Misfit`]: the text is no TOML, or has an unknown, missing or wrong value.
+/// [`Misfit`] if the text is not TOML, or has an unknown, missing or wrong value.
 ///
 /// ```
 /// #[derive(serde::Deserialize)]
@@ -71,14 +69,14 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, Misfit> {
     from_table(&DeTable::parse(text)?)
 }
 
-/// Reads a parsed text, of which something may have been changed.
+/// Parses settings from a table that may have been changed after parsing.
 ///
 /// # Errors
 /// [`Misfit`], as [`from_toml`].
 pub fn from_table<T: DeserializeOwned>(table: &Spanned<DeTable<'_>>) -> Result<T, Misfit> {
     let read = T::deserialize(Deserializer::from(table.clone()))?;
-    // Of an array that is longer than its type, `toml` reads the beginning. Its plain values refuse it, but have no place in the text,
-    // and no numbers beyond `i64`.
+    // `toml` reads only the beginning of an array that is longer than its type. Its plain values refuse such an array,
+    // but have no positions and no numbers beyond `i64`, so this is a second check.
     if let Ok(plain) = toml::Table::deserialize(Deserializer::from(table.clone())) {
         T::deserialize(plain).map_err(|error| {
             let text = error.to_string();
@@ -89,13 +87,13 @@ pub fn from_table<T: DeserializeOwned>(table: &Spanned<DeTable<'_>>) -> Result<T
     Ok(read)
 }
 
-/// Place of the value with this key, whose parts are joined by dots.
+/// Returns the position of the value with this key, whose parts are joined by dots.
 fn place(table: &DeTable<'_>, key: &str) -> Option<Range<usize>> {
     table.iter().find_map(|(first, value)| {
         let rest = key.strip_prefix(first.get_ref().as_ref())?;
         let Some(rest) = rest.strip_prefix('.') else { return rest.is_empty().then(|| value.span()) };
         let inside = if let DeValue::Table(table) = value.get_ref() { place(table, rest) } else { None };
-        // The names of choices are left out of the key.
+        // Keys omit the names of enum variants.
         inside.or_else(|| Some(value.span()))
     })
 }

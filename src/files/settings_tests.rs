@@ -124,7 +124,7 @@ fn each_mistake_is_told_with_its_line() {
 
 #[test]
 fn an_array_that_is_too_long_is_not_cut() {
-    // Plain values of the library have no number beyond `i64`.
+    // The library's plain values cannot hold numbers beyond `i64`.
     let small = WHOLE.replace("0xffff_ffff_ffff_ffff", "7");
     for (from, to, told) in [
         ("-3e-2]", "-3e-2, 4]", "6: invalid length 4, expected fewer elements in array"),

@@ -33,21 +33,17 @@ pub use teleoperation::{LeaderMount, Teleoperation};
 
 use crate::rig::{self, DeviceName, DeviceRole, Part, Side};
 
-/// The settings of a rig: its loop, and its devices if it has any.
+/// Settings of a rig: its loop, and its devices if it has any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigConfig {
-    /// Name shown on the screen.
     pub name: String,
-    /// Rate of the loop, Hz.
     pub rate_hz: f64,
-    /// Mode to start with.
     pub mode: Mode,
     /// One-way delay from follower to leader, s.
     pub delay_s: f64,
     /// Speed limit of commands to the follower, m/s.
     pub follower_speed_max_m_s: f64,
-    /// Identification window and scales.
     #[serde(default)]
     pub identification: Identification,
     /// Settings of the gates between the model and the hand.
@@ -56,22 +52,20 @@ pub struct RigConfig {
     /// Settings of the network that removes the trocar's friction.
     #[serde(default)]
     pub tip_force: TipForcePart,
-    /// Scheduling to request for the loop's thread; if refused, this is reported.
+    /// Scheduling to request for the loop's thread; a refusal is reported.
     #[serde(default)]
     pub scheduling: SchedulingClass,
-    /// What an engagement needs of the ready check.
     #[serde(default)]
     pub ready_check: ReadyCheck,
-    /// Mapping from the hand's motion to the tip's.
     #[serde(default)]
     pub teleoperation: Teleoperation,
-    /// A six-axis cap and pedals that lead a simulated rig.
+    /// A six-axis cap and pedals that control a simulated rig.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub desk: Option<rig::DeskSettings>,
     /// Sensors and tools on the simulated arms of a rig without devices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulated: Option<SimulatedWrists>,
-    /// The endoscope's picture, for the surgeon's view.
+    /// The endoscope image for the surgeon's view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub endoscope: Option<Endoscope>,
     /// The devices; if absent, everything is simulated.
@@ -79,18 +73,15 @@ pub struct RigConfig {
     pub devices: Option<rig::Settings>,
 }
 
-/// What an engagement needs of the ready check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReadyCheck {
-    /// Nothing: a missing check is told.
     #[default]
     Told,
     /// A passed check of today: without one the loop refuses to engage.
     Required,
 }
 
-/// Scheduling of the loop's thread (Linux).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SchedulingClass {
@@ -99,16 +90,16 @@ pub enum SchedulingClass {
     /// `SCHED_FIFO` and locked memory.
     #[default]
     Fifo,
-    /// `SCHED_DEADLINE` and locked memory. Takes precedence over the share of processor time that newer kernels reserve
-    /// for ordinary threads; a runaway loop is suspended by the kernel. Needs root.
+    /// `SCHED_DEADLINE` and locked memory. Takes precedence over the processor time that newer kernels reserve for
+    /// ordinary threads; the kernel suspends a runaway loop. Requires root.
     Deadline,
 }
 
 impl SchedulingClass {
-    /// All classes, in rising order of privilege.
+    /// All classes, in increasing order of privilege.
     pub const ALL: [Self; 3] = [Self::Ordinary, Self::Fifo, Self::Deadline];
 
-    /// Its name in files and on the command line.
+    /// Returns the name in files and on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ordinary => "ordinary",
@@ -127,7 +118,6 @@ impl std::str::FromStr for SchedulingClass {
     }
 }
 
-/// Tip-force part of a rig file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TipForcePart {
@@ -165,10 +155,10 @@ impl RigConfig {
         Self::parse(&path, &text)
     }
 
-    /// The rig that this text of a file describes.
+    /// Parses the text of a rig file.
     ///
     /// # Errors
-    /// As [`load`](Self::load).
+    /// The errors of [`load`](Self::load).
     pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigError> {
         let mut rig: Self = parse_with("rig", path, text, rig::take_out_makes)?;
         rig.devices = rig.devices.map(|devices| devices.emulated_in(&nima_devices::own_folder::runtime_folder()));
@@ -176,19 +166,19 @@ impl RigConfig {
         Ok(rig)
     }
 
-    /// The names of the embedded rigs.
+    /// Returns the names of the embedded rigs.
     pub fn names() -> impl Iterator<Item = &'static str> {
         RIGS.into_iter().map(|(name, _)| name)
     }
 
-    /// Whether the loop refuses to engage without a passed ready check of today: where the file asks for it, and on a rig of real
-    /// devices whose file does not tell right from left.
+    /// Returns whether the loop refuses to engage without a ready check that passed today: if the file requires it, and
+    /// on a rig of real devices whose file does not distinguish right from left.
     pub fn requires_check(&self) -> bool {
         let unnamed = |devices: &rig::Settings| !devices.emulated && !devices.tells_sides();
         self.ready_check == ReadyCheck::Required || self.devices.as_ref().is_some_and(unnamed)
     }
 
-    /// Names and makes of the devices, in the order of the roster.
+    /// Returns names and makes of the devices, in the order of the roster.
     pub fn device_names(&self) -> Vec<DeviceName> {
         let parts = self.devices.iter().flat_map(|devices| {
             Part::ALL.into_iter().filter(|part| part.is_in(devices)).map(|part| part.device(devices))
@@ -203,36 +193,37 @@ impl RigConfig {
         parts.chain(desk.flatten()).collect()
     }
 
-    /// A test of each of its devices; of a simulated rig, of the handle that leads it.
+    /// Returns a test of each device; on a simulated rig, of the handle that controls it.
     pub fn probes(&self) -> Vec<Box<dyn Probe>> {
         let handle = self.desk.as_ref().and_then(|desk| desk.handle.as_ref());
         let handle = handle.map(|handle| handle.probe(Part::Handle(Side::Right).name()));
         self.devices.as_ref().map(rig::rig_probes).into_iter().flatten().chain(handle).collect()
     }
 
-    /// Whether nobody can be hurt: no real device renders a force or moves. Only such a rig may engage by itself.
+    /// Returns whether the rig cannot hurt a person: no real device renders a force or moves. Only such a rig may
+    /// engage automatically.
     pub fn is_harmless(&self) -> bool {
         self.devices.as_ref().is_none_or(|devices| devices.emulated) && !self.has_real_hand()
     }
 
-    /// Whether a person's hand holds the handle of a simulated rig.
+    /// Returns whether a person's hand holds the handle of a simulated rig.
     pub fn has_real_hand(&self) -> bool {
         self.desk.as_ref().is_some_and(|desk| desk.handle.is_some())
     }
 
-    /// Whether the hand at the handle is simulated, within this program.
+    /// Returns whether the hand at the handle is simulated within this program.
     pub fn has_simulated_hand(&self) -> bool {
         self.devices.is_none() && !self.has_real_hand()
     }
 
-    /// Adds the devices of the last passed ready check, by which exchanged ones are told; `None` forgets them.
+    /// Stores the devices of the last passed ready check, against which swapped devices are detected; `None` removes
+    /// them.
     pub fn remember(&mut self, check: Option<&ReadyRecord>) {
         if let Some(devices) = &mut self.devices {
             devices.checked = check.map(rig::Checked::of);
         }
     }
 
-    /// Settings of the identification for this rig.
     pub fn settings(&self) -> Settings {
         let Identification { window_s, max_degree, rest_n, own_motion, cross_talk, scales, literal, .. } =
             self.identification;
@@ -265,10 +256,10 @@ impl RigConfig {
             ranges.check("desk.speed_m_s", speed, speed > 0.0 && speed <= 0.15, "above 0, at most 0.15 m/s")?;
             let simulated = if self.devices.is_none() { 1.0 } else { 0.0 };
             ranges.check(
-                "desk beside [devices]",
+                "desk together with [devices]",
                 simulated,
                 self.devices.is_none(),
-                "left out: a rig has one or the other",
+                "omitted: a rig has either of them",
             )?;
         }
         ranges.within("teleoperation.scale", self.teleoperation.scale, &limits::SCALE)?;
@@ -298,7 +289,7 @@ impl RigConfig {
             "gates.gain",
             gates.gain,
             GAIN.contains(gates.gain),
-            format!("{GAIN} (more needs the operator)"),
+            format!("{GAIN} (only the operator can set more)"),
         )?;
         ranges.check(
             "gates.ceiling_n",

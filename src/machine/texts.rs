@@ -1,20 +1,20 @@
-//! Checks the texts of rig and scene files. They are shown on the screen and in messages as they are, so they must be
-//! short and printable.
+//! Checks the texts of rig and scene files. They are displayed unmodified on the screen and in messages, so they must
+//! be short and printable.
 
 use nima_files::quoted;
 use toml::de::{DeTable, DeValue};
 
-/// Longest text, characters: names, addresses, ports, paths.
+/// Maximum length of a text, characters: names, addresses, ports, paths. Chosen.
 const MOST: usize = 512;
 
-/// Key and fault of the first text that cannot be displayed.
+/// Returns key and fault of the first text that cannot be displayed.
 pub(crate) fn fault(table: &DeTable<'_>) -> Option<String> {
     table.iter().find_map(|(key, value)| {
         of_value(value.get_ref()).map(|(place, fault)| format!("{}{place} {fault}", quoted(key.get_ref())))
     })
 }
 
-/// Key below this value, and what is wrong with its text.
+/// Returns the key below this value and the fault of its text.
 fn of_value(value: &DeValue<'_>) -> Option<(String, String)> {
     match value {
         DeValue::String(text) => of_text(text).map(|fault| (String::new(), fault)),
@@ -31,10 +31,10 @@ fn of_value(value: &DeValue<'_>) -> Option<(String, String)> {
 
 fn of_text(text: &str) -> Option<String> {
     if text.chars().any(char::is_control) {
-        return Some(format!("= \"{}\" has a control character; write it in plain letters", quoted(text)));
+        return Some(format!("= \"{}\" contains a control character; use printable characters", quoted(text)));
     }
     let long = text.chars().nth(MOST).is_some();
-    long.then(|| format!("= \"{}\" is too long; at most {MOST} characters are possible", quoted(text)))
+    long.then(|| format!("= \"{}\" is too long; use at most {MOST} characters", quoted(text)))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Files: recordings of motion and force, sessions, data sets, trained networks, calibrations.
 //!
-//! Converts between bytes and the checked types of `nima-core`. Every reader refuses what it does not understand and
-//! reports the position; every writer writes a temporary file first and renames it, but that of a session, whose file is valid at
-//! every moment while it grows.
+//! Converts between bytes and the checked types of `nima-core`. Every reader refuses what it cannot interpret and
+//! reports the position. Every writer writes a temporary file first and renames it, except the writer of a session,
+//! whose file is valid at every moment while it grows.
 
 pub mod csv;
 pub mod messages;

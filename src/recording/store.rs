@@ -19,39 +19,35 @@ use serde::{Deserialize, Serialize};
 
 pub use ready::{CheckedDevice, CheckedItem, KIND as READY_CHECK, Outcome, ReadyRecord, VALID_S};
 
-/// What a calibration is bound to: one wrist sensor with one tool.
+/// Identifies what a calibration is bound to: one wrist sensor with one tool.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WristId {
-    /// Serial number that the sensor reports.
+    /// As reported by the sensor.
     pub serial_number: String,
-    /// Name of the tool in the rig file; another tool needs a calibration of its own.
+    /// Name of the tool in the rig file; another tool needs its own calibration.
     pub tool: String,
 }
 
-/// Why a calibration file could not be used or written: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// The folder for the user's data is not known.
-    #[error("no folder for calibrations is known; set NIMA_DATA_DIR to one")]
+    #[error("no folder for calibrations found; set NIMA_DATA_DIR to a folder")]
     NoFolder,
-    /// The serial number or tool cannot be part of a file name.
-    #[error("\"{name}\" cannot name a calibration; use letters, digits, '-', '_' and '.', at most 64, not first a '.'")]
+    #[error(
+        "\"{name}\" cannot be part of a file name; use letters, digits, '-', '_' and '.', at most 64, not first a '.'"
+    )]
     Name { name: String },
-    /// The file could not be read.
     #[error("cannot read calibration {path}")]
     Read { path: PathBuf, source: io::Error },
-    /// The file could not be written.
     #[error("cannot write calibration {path}")]
     Write { path: PathBuf, source: io::Error },
-    /// The file is not valid TOML of its kind.
     #[error("calibration {path} is damaged: {message}; repair it or calibrate again")]
     Damaged {
         path: PathBuf,
         /// Line, column and key.
         message: String,
     },
-    #[error("calibration {path} is for {what} \"{found}\", not \"{wanted}\"; calibrate this one")]
+    #[error("calibration {path} is for {what} \"{found}\", not \"{wanted}\"; calibrate this {what}")]
     Other {
         path: PathBuf,
         /// `kind`, `sensor` or `tool`.
@@ -59,33 +55,27 @@ pub enum StoreError {
         found: String,
         wanted: String,
     },
-    /// The verdict does not allow its use, and nobody has overridden it.
-    #[error("the {kind} calibration was refused ({reason}); repeat it, or name who overrides the verdict")]
+    /// The verdict forbids its use, and no person has overridden it.
+    #[error("the {kind} calibration was refused: {reason}; repeat it, or name the person who overrides the verdict")]
     Refused { kind: &'static str, reason: String },
-    /// The record cannot be written as TOML.
     #[error("the {kind} calibration cannot be written: {message}; calibrate again")]
     Unwritable { kind: &'static str, message: String },
 }
 
-/// Age of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Age {
-    /// Recent enough.
     Fresh,
-    /// It should be repeated.
     Old {
-        /// Age in whole days.
         days: u64,
     },
-    /// Its date is in the future: a clock is wrong.
+    /// The date is in the future, so a clock is wrong.
     Future,
 }
 
-/// A loaded record and its age.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded<R> {
     pub record: R,
-    /// Its age; warn if it is not `Fresh`.
+    /// Warn if it is not `Fresh`.
     pub age: Age,
     pub path: PathBuf,
 }
@@ -94,7 +84,6 @@ pub struct Loaded<R> {
 pub const DEFAULT_MAX_AGE_DAYS: u64 = 30;
 const DAY_S: u64 = 86_400;
 
-/// A folder of calibrations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Store {
     folder: PathBuf,
@@ -102,12 +91,13 @@ pub struct Store {
 }
 
 impl Store {
-    /// The store in this folder, which is created when the first record is saved.
+    /// Opens the store in this folder, which is created when the first record is saved.
     pub fn open(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), max_age_days: DEFAULT_MAX_AGE_DAYS }
     }
 
-    /// The user's store: `$NIMA_DATA_DIR/calibrations`, else `nima-console/calibrations` in the platform's data folder.
+    /// Opens the user's store: `$NIMA_DATA_DIR/calibrations`, else `nima-console/calibrations` in the platform's data
+    /// folder.
     ///
     /// # Errors
     /// [`StoreError`] if the variable is not set and the platform has no data folder.
@@ -123,12 +113,11 @@ impl Store {
         self
     }
 
-    /// Its folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Path of the record of this kind for this sensor.
+    /// Returns the path of this kind of record for this sensor.
     ///
     /// # Errors
     /// [`StoreError`] if the sensor's name cannot be part of a file name.
@@ -136,7 +125,7 @@ impl Store {
         Ok(self.folder.join(format!("{}-{}.toml", R::KIND, checked(sensor)?)))
     }
 
-    /// Other sensors with a record of this kind for the same tool. Unreadable files are skipped.
+    /// Returns the other sensors with a record of this kind for the same tool. Unreadable files are skipped.
     pub fn other_sensors<R: Record>(&self, wrist: &WristId) -> Vec<String> {
         let of_kind = format!("{}-", R::KIND);
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
@@ -155,7 +144,8 @@ impl Store {
         sensors
     }
 
-    /// Path of another file of this kind for this sensor, `KIND-SENSOR.ENDING`: for networks and their data sets.
+    /// Returns the path of another file of this kind for this sensor, `KIND-SENSOR.ENDING`: for networks and their data
+    /// sets.
     ///
     /// # Errors
     /// [`StoreError`] if kind or sensor cannot be part of a file name.
@@ -172,12 +162,12 @@ impl Store {
         Ok(self.folder.join(format!("{}-{}.{ending}", checked(kind)?, checked(sensor)?)))
     }
 
-    /// Age at `now` of something with this date (UTC, ISO 8601); `None` if it is not a valid date.
+    /// Returns the age at `now` of a date (UTC, ISO 8601); `None` if the date is invalid.
     pub fn age_of(&self, date: &str, now: SystemTime) -> Option<Age> {
         date::parse(date).map(|made_s| self.age(made_s, seconds(now)))
     }
 
-    /// Saves a record under its sensor's name and returns the path; the previous one is kept as `.previous`.
+    /// Saves a record under its sensor's name and returns the path; the previous record is kept as `.previous`.
     ///
     /// # Errors
     /// [`StoreError`] for a record that was rejected without an override, or a folder or file that cannot be written.
@@ -188,7 +178,7 @@ impl Store {
         Ok(path)
     }
 
-    /// Loads the record for this sensor and tool; `None` if there is none.
+    /// Loads the record of this sensor and tool; `None` if there is none.
     ///
     /// # Errors
     /// [`StoreError`] for a file that cannot be read, is not a record of this kind, belongs to another sensor or tool,
@@ -220,7 +210,7 @@ impl Store {
     }
 }
 
-/// Writes one record to any path with the rules of the store: verdict or override, atomic, the previous file kept as
+/// Writes one record to any path by the rules of the store: verdict or override, atomic, the previous file kept as
 /// `.previous` (same name with that ending).
 ///
 /// # Errors
@@ -235,7 +225,7 @@ pub fn write<R: Record>(path: &Path, record: &R) -> Result<(), StoreError> {
     }
     let text = toml::to_string(record).map_err(|error| unwritable(error.to_string()))?;
     let failed = |source| StoreError::Write { path: path.to_owned(), source };
-    // Copied and then replaced by renaming the new file: there is a calibration at every moment.
+    // Copied, then replaced by renaming the new file, so that a calibration exists at every moment.
     keep_previous(path).map_err(failed)?;
     write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(failed)
 }
@@ -284,27 +274,27 @@ pub fn read<R: Record>(path: &Path) -> Result<Option<R>, StoreError> {
     Ok(Some(record))
 }
 
-/// The present time, UTC, ISO 8601 to the second: the date of a record.
+/// Returns the current time, UTC, ISO 8601 to the second: the date of a record.
 pub fn utc_now() -> String {
     utc_of(SystemTime::now())
 }
 
-/// A time in UTC, ISO 8601, for example `2026-08-21T10:20:30Z`.
+/// Formats a time as UTC, ISO 8601, for example `2026-08-21T10:20:30Z`.
 pub fn utc_of(time: SystemTime) -> String {
     date::format(seconds(time))
 }
 
-/// Whole days from a date (UTC, ISO 8601) to `now`; `None` if it is not a valid date. Zero for one in the future.
+/// Returns the whole days from a date (UTC, ISO 8601) to `now`: zero for a future date, `None` for an invalid one.
 pub fn days_since(date: &str, now: SystemTime) -> Option<u64> {
     date::parse(date).map(|made_s| seconds(now).saturating_sub(made_s) / DAY_S)
 }
 
-/// Seconds since 1970; zero for earlier times.
+/// Returns the seconds since 1970; zero for earlier times.
 fn seconds(time: SystemTime) -> u64 {
     time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
 }
 
-/// Path of the previous version of the file at `path`.
+/// Returns the path of the previous version of the file at `path`.
 pub fn previous(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".previous");
@@ -327,7 +317,7 @@ fn checked(name: &str) -> Result<&str, StoreError> {
     if can_name_a_file(name) { Ok(name) } else { Err(StoreError::Name { name: quoted(name) }) }
 }
 
-/// From environment variables, read with `get` (an empty one counts as unset).
+/// Reads environment variables with `get`; an empty variable counts as unset.
 fn user_folder(get: &dyn Fn(&str) -> Option<PathBuf>) -> Option<PathBuf> {
     if let Some(folder) = get("NIMA_DATA_DIR") {
         return Some(folder.join("calibrations"));
@@ -337,7 +327,7 @@ fn user_folder(get: &dyn Fn(&str) -> Option<PathBuf>) -> Option<PathBuf> {
     } else if cfg!(target_os = "macos") {
         get("HOME").map(|home| home.join("Library/Application Support"))
     } else {
-        // The XDG base directory specification: a relative path is invalid and ignored.
+        // XDG base directory specification: a relative path is invalid and ignored.
         get("XDG_DATA_HOME")
             .filter(|path| path.is_absolute())
             .or_else(|| get("HOME").map(|home| home.join(".local/share")))

@@ -1,7 +1,8 @@
-//! A session without what tells who recorded it, where and when.
+//! Writes a session without anything that reveals who recorded it, where or when.
 //!
-//! Nothing is copied. Messages of known topics are made anew from their numbers, under this program's own names and with times that begin
-//! in 1970; everything else is left out. So what a later version adds to a session stays out until it is handled here.
+//! Nothing is copied. Messages of known topics are rebuilt from their numbers, under this program's own names and with
+//! times that begin in 1970; everything else is left out. Data that a later version adds to a session are therefore
+//! left out until they are handled here.
 
 use std::{collections::BTreeMap, fs, ops::Range, path::Path, sync::atomic::AtomicBool, time::UNIX_EPOCH};
 
@@ -35,23 +36,23 @@ use crate::{
     },
 };
 
-/// Stands for what is withheld.
+/// Replaces a text that may identify someone.
 pub const WITHHELD: &str = "(withheld)";
-/// In the table of the session: that it is anonymous.
+/// Key in the table of the session that marks it as anonymous.
 pub const ANONYMOUS: &str = "anonymous";
-/// The table of the session, and the entries of it that are kept as they are where their value is one of these.
+/// The table of the session, and the entries of it that are kept if their value is one of these.
 const TABLE: &str = "session";
 const WORDS: [(&str, &[&str]); 2] = [("clock", &["real", "virtual"]), ("build", &["debug", "release"])];
-/// The tables of calibrations begin with this.
+/// Prefix of the tables of calibrations.
 const CALIBRATIONS: &str = "calibrations ";
-/// And those that are kept where they are numbers.
+/// The entries that are kept if they are numbers.
 const NUMBERS: [&str; 2] = ["rate_hz", "delay_s"];
 
-/// What the caller knows of a session beside its numbers.
+/// Input of the caller, in addition to the session itself.
 pub struct Known<'a> {
     /// Name and version of this program.
     pub program: &'a str,
-    /// Files to attach, in place of those that are in the session.
+    /// Files to attach instead of the session's own.
     pub files: &'a [Attached],
     /// Texts for the values of the log.
     pub words: Words,
@@ -65,11 +66,11 @@ impl std::fmt::Debug for Known<'_> {
     }
 }
 
-/// Writes what is not personal of the messages between these times (ns) into a new file, and returns how many messages there are in it.
-/// `asked` ends it early.
+/// Writes the impersonal part of the messages between these times (ns) into a new file and returns the number of
+/// messages written. Setting `asked` ends it early.
 ///
 /// # Errors
-/// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
+/// [`CutError`] if the session cannot be read or the file cannot be written. The caller must then delete the file.
 pub fn write(
     reader: &Reader,
     known: &Known<'_>,
@@ -107,7 +108,7 @@ pub fn write(
         }
     }
     let messages = out.finish()?;
-    // When it was written tells when it was looked at.
+    // The file's times would reveal when the session was viewed.
     let times = fs::FileTimes::new().set_modified(UNIX_EPOCH).set_accessed(UNIX_EPOCH);
     fs::File::options().write(true).open(to).and_then(|file| file.set_times(times)).map_err(CutError::Times)?;
     Ok(messages)
@@ -117,7 +118,7 @@ const fn since(time_ns: u64, begin_ns: u64) -> u64 {
     if time_ns == u64::MAX { time_ns } else { time_ns.saturating_sub(begin_ns) }
 }
 
-/// The entries of the table of a session that tell nothing of persons, places and dates.
+/// Returns the entries of a session's table that reveal no persons, places or dates.
 fn about(table: &BTreeMap<String, String>) -> BTreeMap<String, String> {
     let words = WORDS.map(|(key, words)| (key, words.to_vec()));
     let mode = table.get("mode").and_then(|mode| mode.parse::<Mode>().ok()).map(|mode| ("mode", mode.to_string()));
@@ -133,7 +134,7 @@ fn about(table: &BTreeMap<String, String>) -> BTreeMap<String, String> {
     about
 }
 
-/// The entries of a table with these keys: those whose values are among these words, and those that are numbers.
+/// Returns the entries of a table with these keys whose values are among these words or are numbers.
 fn kept(table: &BTreeMap<String, String>, words: &[(&str, Vec<&str>)], numbers: &[&str]) -> BTreeMap<String, String> {
     let word = |(key, words): &(&str, Vec<&str>)| {
         Some(((*key).to_owned(), table.get(*key).filter(|value| words.contains(&value.as_str()))?.clone()))
@@ -142,12 +143,12 @@ fn kept(table: &BTreeMap<String, String>, words: &[(&str, Vec<&str>)], numbers: 
     words.iter().filter_map(word).chain(numbers.iter().filter_map(number)).collect()
 }
 
-/// Whether calibrations are those of a side, or have a number.
+/// Whether calibrations belong to a side or have a number.
 fn is_ours(of: &str) -> bool {
     Side::ALL.iter().any(|side| side.word() == of) || of.parse::<u32>().is_ok()
 }
 
-/// A topic that is written anew.
+/// A topic that is rebuilt.
 enum Topic {
     Numbers { topic: String, names: Vec<String>, forces: bool, decoder: JointStateDecoder, plot: Option<Plot> },
     Frames(Channel),
@@ -159,7 +160,7 @@ enum Topic {
 }
 
 impl Topic {
-    /// The one of this name; `None` for one that is left out.
+    /// Returns the topic of this name; `None` for a topic that is left out.
     fn named(name: &str, out: &mut Outlet) -> Result<Option<Self>, CutError> {
         Ok(match name {
             FRAMES_TOPIC => Some(Self::Frames(out.channel(name, foxglove::encoding::<FrameTransforms>())?)),
@@ -178,7 +179,7 @@ impl Topic {
         })
     }
 
-    /// Writes the message anew; one that cannot be read is left out.
+    /// Rebuilds the message; an unreadable message is left out.
     fn pass(&mut self, out: &mut Outlet, time_ns: u64, message: &Message, known: &Known<'_>) -> Result<(), CutError> {
         let data = message.data();
         match self {

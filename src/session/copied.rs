@@ -1,8 +1,9 @@
-//! The file of a session, written elsewhere while it happens.
+//! A session file that is written on another machine during the recording.
 //!
-//! The recorder's thread hands on everything that it writes, as [`Part`]s in numbered [`Bundle`]s. Whoever has all of them from the first
-//! one writes a file that replays as the original does. Whoever comes later begins with a [`Head`], which holds the tables, files and
-//! channels of what is no longer there, and writes a stretch: a journal can be replayed from its beginning only.
+//! The recorder's thread forwards everything that it writes, as [`Part`]s in numbered [`Bundle`]s. A receiver that has
+//! all bundles from the first one writes a file that replays like the original. A receiver that joins later begins with
+//! a [`Head`], which holds the tables, files and channels of the bundles that are gone, and writes an excerpt: a
+//! journal can be replayed only from its beginning.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -14,30 +15,25 @@ use crate::{
     recorder::{Attached, JOURNAL_TOPIC},
 };
 
-/// Version of heads and bundles; another one is refused.
+/// Version of heads and bundles; other versions are refused.
 const VERSION: u32 = 1;
 
-/// What was written into a file, one after the other.
+/// One write into a session file.
 #[derive(Clone, PartialEq, Oneof)]
 pub enum Part {
-    /// Named values.
     #[prost(message, tag = "1")]
     Table(Table),
-    /// A whole file.
     #[prost(message, tag = "2")]
     File(WholeFile),
-    /// A new channel. Its number is the count of those before it.
+    /// A new channel. Channels are numbered from 0 in the order of their creation.
     #[prost(message, tag = "3")]
     Channel(NewChannel),
-    /// A message of a channel.
     #[prost(message, tag = "4")]
     Message(OfChannel),
 }
 
-/// Named values.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Table {
-    /// Name of the table.
     #[prost(string, tag = "1")]
     pub name: String,
     /// Its values, by name.
@@ -45,24 +41,20 @@ pub struct Table {
     pub entries: BTreeMap<String, String>,
 }
 
-/// A whole file.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct WholeFile {
-    /// When it was made, ns since 1970.
+    /// Time of its creation, ns since 1970.
     #[prost(uint64, tag = "1")]
     pub time_ns: u64,
-    /// Its name.
     #[prost(string, tag = "2")]
     pub name: String,
-    /// Its media type.
     #[prost(string, tag = "3")]
     pub media_type: String,
-    /// Its content.
     #[prost(bytes = "vec", tag = "4")]
     pub data: Vec<u8>,
 }
 
-/// A channel, as [`Encoding`] describes it.
+/// A channel, with the fields of [`Encoding`].
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct NewChannel {
     #[prost(string, tag = "1")]
@@ -77,50 +69,43 @@ pub struct NewChannel {
     pub message_encoding: String,
 }
 
-/// A message of a channel.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct OfChannel {
-    /// Number of the channel.
     #[prost(uint32, tag = "1")]
     pub channel: u32,
     /// Time of its sample, ns since 1970.
     #[prost(fixed64, tag = "2")]
     pub time_ns: u64,
-    /// Its content.
     #[prost(bytes = "vec", tag = "3")]
     pub data: Vec<u8>,
 }
 
 impl Part {
-    /// Whether it is a message; everything else belongs into every file of the session.
+    /// Whether it is a message; every other part belongs into every file of the session.
     pub const fn is_message(&self) -> bool {
         matches!(self, Self::Message(_))
     }
 
-    /// A table.
     pub fn table(name: &str, entries: &BTreeMap<String, String>) -> Self {
         Self::Table(Table { name: name.to_owned(), entries: entries.clone() })
     }
 
-    /// A whole file.
     pub fn file(time_ns: u64, attached: &Attached) -> Self {
         let Attached { name, media_type, data } = attached.clone();
         Self::File(WholeFile { time_ns, name, media_type, data })
     }
 
-    /// A channel.
     pub fn channel(topic: &str, encoding: &Encoding) -> Self {
         let Encoding { schema, schema_encoding, schema_data, message_encoding } = encoding.clone();
         Self::Channel(NewChannel { topic: topic.to_owned(), schema, schema_encoding, schema_data, message_encoding })
     }
 
-    /// A message.
     pub fn message(channel: usize, time_ns: u64, data: &[u8]) -> Self {
         Self::Message(OfChannel { channel: channel as u32, time_ns, data: data.to_vec() })
     }
 }
 
-/// A part in a message of its own.
+/// Wraps a part in its own message, as Protocol Buffers require.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Slot {
     /// `None` in a damaged message.
@@ -128,19 +113,19 @@ pub struct Slot {
     pub part: Option<Part>,
 }
 
-/// What was written in a short time.
+/// The parts written within a short time.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Bundle {
     /// See [`VERSION`].
     #[prost(uint32, tag = "1")]
     version: u32,
-    /// Which session of the rig's program this is.
+    /// Identifies the session within the rig's program.
     #[prost(uint64, tag = "2")]
     pub session: u64,
     /// Counts the bundles of a session from 0.
     #[prost(uint64, tag = "3")]
     pub number: u64,
-    /// The session has ended: this is its last bundle.
+    /// Whether the session has ended with this bundle.
     #[prost(bool, tag = "4")]
     pub closes: bool,
     #[prost(message, repeated, tag = "5")]
@@ -148,50 +133,47 @@ pub struct Bundle {
 }
 
 impl Bundle {
-    /// A bundle of these parts.
     pub fn new(session: u64, number: u64, parts: Vec<Part>, closes: bool) -> Self {
         let parts = parts.into_iter().map(|part| Slot { part: Some(part) }).collect();
         Self { version: VERSION, session, number, closes, parts }
     }
 
-    /// Its parts.
     pub fn parts(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter_map(|slot| slot.part.as_ref())
     }
 
-    /// Its bytes.
     pub fn pack(&self) -> Vec<u8> {
         self.encode_to_vec()
     }
 
-    /// Reads what [`Bundle::pack`] wrote.
+    /// Parses the bytes of [`Bundle::pack`].
     ///
     /// # Errors
-    /// [`CopyError`] if it comes from another version, or is damaged.
+    /// [`CopyError`] if they come from another version or are damaged.
     pub fn read(bytes: &[u8]) -> Result<Self, CopyError> {
         let bundle = Self::decode(bytes).map_err(|error| CopyError::Damaged(error.to_string()))?;
         if bundle.version == VERSION { Ok(bundle) } else { Err(CopyError::Version) }
     }
 }
 
-/// What is needed of a session's past to begin with one of its bundles.
+/// Everything from earlier bundles that is needed to begin at a later one.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Head {
     #[prost(uint32, tag = "1")]
     version: u32,
-    /// Which session of the rig's program this is.
+    /// Identifies the session within the rig's program.
     #[prost(uint64, tag = "2")]
     pub session: u64,
-    /// Name and version of the program that records.
+    /// Name and version of the recording program.
     #[prost(string, tag = "3")]
     pub program: String,
-    /// When the loop's clock began, ns since 1970 (UTC).
+    /// Start of the loop's clock, ns since 1970 (UTC).
     #[prost(fixed64, tag = "4")]
     pub started_ns: u64,
-    /// Number of the first bundle that is still there.
+    /// Number of the first bundle that is still available.
     #[prost(uint64, tag = "5")]
     pub first: u64,
-    /// Messages were in the bundles before it.
+    /// Whether messages were in the bundles before it.
     #[prost(bool, tag = "6")]
     pub lacks: bool,
     #[prost(message, repeated, tag = "7")]
@@ -199,13 +181,13 @@ pub struct Head {
 }
 
 impl Head {
-    /// At the beginning of a session.
+    /// Makes the head at the beginning of a session.
     pub fn new(session: u64, program: &str, started_ns: u64) -> Self {
         let program = program.to_owned();
         Self { version: VERSION, session, program, started_ns, first: 0, lacks: false, parts: Vec::new() }
     }
 
-    /// The oldest bundle goes: what is not a message stays here.
+    /// Removes the oldest bundle but keeps everything of it that is not a message.
     pub fn outlive(&mut self, oldest: Bundle) {
         self.first = oldest.number + 1;
         for slot in oldest.parts {
@@ -216,21 +198,20 @@ impl Head {
         }
     }
 
-    /// Its bytes.
     pub fn pack(&self) -> Vec<u8> {
         self.encode_to_vec()
     }
 
-    /// Reads what [`Head::pack`] wrote.
+    /// Parses the bytes of [`Head::pack`].
     ///
     /// # Errors
-    /// [`CopyError`] if it comes from another version, or is damaged.
+    /// [`CopyError`] if they come from another version or are damaged.
     pub fn read(bytes: &[u8]) -> Result<Self, CopyError> {
         let head = Self::decode(bytes).map_err(|error| CopyError::Damaged(error.to_string()))?;
         if head.version == VERSION { Ok(head) } else { Err(CopyError::Version) }
     }
 
-    /// A table of the session, from here or from its first bundle.
+    /// Returns a table of the session, from this head or from its first bundle.
     pub fn table<'a>(&'a self, first: &'a Bundle, name: &str) -> Option<&'a BTreeMap<String, String>> {
         let parts = self.parts.iter().chain(&first.parts).filter_map(|slot| slot.part.as_ref());
         parts.into_iter().find_map(|part| match part {
@@ -240,42 +221,32 @@ impl Head {
     }
 }
 
-/// Why a session cannot be written elsewhere.
 #[derive(Debug, thiserror::Error)]
 pub enum CopyError {
-    /// Another version of the program.
-    #[error("the rig runs another version of this program; install the same version here and there")]
+    #[error("the rig runs another version of this program; install the same version on both computers")]
     Version,
-    /// It is damaged.
     #[error("a message of the rig is damaged: {0}")]
     Damaged(String),
-    /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// A bundle is missing.
-    #[error("bundle {came} of the session came where bundle {due} was due")]
-    Gap {
-        /// The one that came.
-        came: u64,
-        /// The one that was due.
-        due: u64,
-    },
+    #[error("bundle {came} of the session arrived, but bundle {due} was expected; begin a new copy")]
+    Gap { came: u64, due: u64 },
 }
 
-/// A session file that is written elsewhere.
+/// Writes a copy of a session file.
 pub struct Copy {
     writer: Writer,
-    /// Of the file, by their numbers in the session; `None` for the journal of a stretch.
+    /// Channels of the copy, by their numbers in the session; `None` for the journal of an excerpt.
     channels: Vec<Option<ChannelId>>,
     is_stretch: bool,
     due: u64,
 }
 
 impl Copy {
-    /// Begins a new file with this head; `first` is the bundle that follows it.
+    /// Creates a file from this head; `first` is the bundle that follows it.
     ///
     /// # Errors
-    /// [`CopyError`] if the file cannot be written, or `first` is another bundle.
+    /// [`CopyError`] if the file cannot be written or `first` is another bundle.
     pub fn create(path: &Path, head: &Head, first: &Bundle) -> Result<Self, CopyError> {
         let writer = Writer::create(path, &head.program)?;
         let mut copy = Self { writer, channels: Vec::new(), is_stretch: head.lacks, due: head.first };
@@ -297,10 +268,10 @@ impl Copy {
         Ok(copy)
     }
 
-    /// Adds the next bundle, and closes the chunk of the file.
+    /// Adds the next bundle and closes the chunk of the file.
     ///
     /// # Errors
-    /// [`CopyError`] if it is not the next one, or the file cannot be written.
+    /// [`CopyError`] if it is not the next bundle or the file cannot be written.
     pub fn add(&mut self, bundle: &Bundle) -> Result<(), CopyError> {
         if bundle.number != self.due {
             return Err(CopyError::Gap { came: bundle.number, due: self.due });
@@ -312,17 +283,16 @@ impl Copy {
         Ok(self.writer.flush()?)
     }
 
-    /// Number of the bundle that is due.
+    /// Number of the expected bundle.
     pub const fn due(&self) -> u64 {
         self.due
     }
 
-    /// Bytes in the file.
     pub fn bytes(&self) -> u64 {
         self.writer.bytes().1
     }
 
-    /// Ends the file; how many messages are in it.
+    /// Closes the file and returns its number of messages.
     ///
     /// # Errors
     /// [`CopyError`] if it cannot be written.

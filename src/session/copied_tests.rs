@@ -5,7 +5,6 @@ use nima_recording::session::Reader;
 use super::*;
 use crate::outlet::{Audience, Destination, Outlet};
 
-/// Keeps everything that it is given.
 #[derive(Clone, Debug, Default)]
 struct Listener(Arc<Mutex<(Head, Vec<Part>)>>);
 
@@ -39,7 +38,8 @@ impl Audience for Listener {
 
 const START_NS: u64 = 1_700_000_000_000_000_000;
 
-/// A session of 100 messages of two channels, a table in their middle; its head, and its bundles of ten parts.
+/// Makes a session of 100 messages on two channels with a table in the middle; returns its head and its bundles of ten
+/// parts.
 fn made(path: &Path) -> (Head, Vec<Bundle>) {
     let listener = Listener::default();
     let to = Destination { file: Some(path), audiences: vec![Box::new(listener.clone())] };
@@ -63,7 +63,7 @@ fn made(path: &Path) -> (Head, Vec<Bundle>) {
     (head, parts.chunks(10).enumerate().map(bundle).collect())
 }
 
-/// All that is in a file.
+/// The whole content of a file.
 fn content(path: &Path) -> String {
     let reader = Reader::open(path).unwrap();
     let messages: Vec<_> = reader

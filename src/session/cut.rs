@@ -1,7 +1,7 @@
-//! A stretch of a session as a session file of its own.
+//! Saves an excerpt of a session as a session file.
 //!
-//! A journal can be replayed from its beginning only: a stretch that begins with the first tick keeps it up to the cut, any other one
-//! leaves it out.
+//! A journal can be replayed only from its beginning. An excerpt that begins with the first tick keeps the journal up
+//! to its end; any other excerpt omits it.
 
 use std::{
     collections::BTreeMap,
@@ -15,47 +15,41 @@ use nima_recording::session::{ChannelId, Message, ReadError, Reader, WriteError,
 
 use crate::{plotted, recorder::JOURNAL_TOPIC};
 
-/// The table that tells where a stretch was cut from.
+/// The table with the origin of an excerpt.
 pub(crate) const TABLE: &str = "cut";
-/// In it: when the session began, ns, so that times stay those of the whole session.
+/// Key in that table: begin of the session, ns, so that times remain those of the whole session.
 pub(crate) const BEGINNING: &str = "session_begins_ns";
-/// In it: the name of that session.
+/// Key in that table: name of the session.
 pub(crate) const SESSION: &str = "session";
 
-/// Why a stretch cannot be cut out.
 #[derive(Debug, thiserror::Error)]
 pub enum CutError {
-    /// The session cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The stretch cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The times of its file cannot be set.
-    #[error("the times of the file cannot be set")]
+    #[error("cannot set the times of the new file; check the permissions of its folder")]
     Times(#[source] io::Error),
-    /// The process was asked to end.
-    #[error("ended as asked: nothing was written")]
+    #[error("ended on request: nothing was written")]
     Asked,
 }
 
-/// What was written.
+/// Result of saving an excerpt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cut {
-    /// Messages.
     pub messages: u64,
-    /// What became of the journal.
+    /// Whether the journal was kept.
     pub journal: Kept,
 }
 
-/// What became of a journal.
+/// Outcome for the journal of an excerpt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
-    /// It is there up to the cut.
+    /// The journal is kept up to the end of the excerpt.
     Yes,
-    /// The stretch does not begin with the first tick.
+    /// Omitted, because the excerpt does not begin with the first tick.
     LeftOut,
-    /// There was none.
+    /// The session has no journal.
     None,
 }
 
@@ -69,11 +63,11 @@ impl Kept {
     }
 }
 
-/// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is what the session is called
-/// in the table that tells where the stretch was cut from. `asked` ends it early.
+/// Writes the messages between these times (ns) into a new file, with all attachments and tables. `name` is the
+/// session's name in the table with the excerpt's origin. Setting `asked` ends it early.
 ///
 /// # Errors
-/// [`CutError`] if the session cannot be read or the file cannot be written; it is to be deleted then.
+/// [`CutError`] if the session cannot be read or the file cannot be written. The caller must then delete the file.
 pub fn write(
     reader: &Reader,
     name: &str,
@@ -83,7 +77,7 @@ pub fn write(
 ) -> Result<Cut, CutError> {
     let begin_ns = plotted::beginning_ns(reader)?;
     let journal = journal(reader, times_ns.start)?;
-    // What the loop was made of stands before the first tick.
+    // The origin of the loop is stored before the first tick.
     let start_ns = if journal == Kept::Yes { 0 } else { times_ns.start };
     let mut writer = Writer::create(to, reader.library())?;
     let mut tables = reader.metadata()?;
@@ -111,12 +105,12 @@ pub fn write(
     Ok(Cut { messages: writer.finish()?.messages, journal })
 }
 
-/// The message, unless the process was asked to end.
+/// Returns the message, or an error once cancellation was requested.
 pub(crate) fn unless(asked: &AtomicBool, message: Result<Message, ReadError>) -> Result<Message, CutError> {
     if asked.load(Ordering::Relaxed) { Err(CutError::Asked) } else { Ok(message?) }
 }
 
-/// Whether the journal can be kept by a stretch that begins here.
+/// Whether an excerpt that begins here can keep the journal.
 fn journal(reader: &Reader, start_ns: u64) -> Result<Kept, ReadError> {
     if reader.channels().iter().all(|channel| channel.topic != JOURNAL_TOPIC) {
         return Ok(Kept::None);
@@ -128,7 +122,7 @@ fn journal(reader: &Reader, start_ns: u64) -> Result<Kept, ReadError> {
     Ok(if is_first { Kept::Yes } else { Kept::LeftOut })
 }
 
-/// The table of a stretch of the session with this name.
+/// Returns the table of an excerpt of the session with this name.
 pub(crate) fn table(
     name: &str,
     begin_ns: u64,
@@ -136,7 +130,7 @@ pub(crate) fn table(
     journal: Kept,
     before: Option<&BTreeMap<String, String>>,
 ) -> BTreeMap<String, String> {
-    // A stretch of a stretch is one of the session.
+    // An excerpt of an excerpt counts as an excerpt of the session.
     let session = before.and_then(|before| before.get(SESSION)).map_or(name, String::as_str);
     let mut table = stretch(begin_ns, times_ns);
     for (key, value) in [(SESSION, session), ("journal", journal.word())] {
@@ -145,7 +139,7 @@ pub(crate) fn table(
     table
 }
 
-/// The table of a stretch: its times (s) in a session that begins at `begin_ns`.
+/// Returns the table of an excerpt: its times (s) in a session that begins at `begin_ns`.
 pub(crate) fn stretch(begin_ns: u64, times_ns: &Range<u64>) -> BTreeMap<String, String> {
     let seconds = |time_ns: u64| match time_ns {
         u64::MAX => "the end".to_owned(),

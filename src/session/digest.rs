@@ -1,6 +1,6 @@
-//! The digest of what comes out of a tick: equal digests mean equal bits.
+//! The digest of a tick's outputs: equal digests mean equal bits.
 //!
-//! A digest of our own, because it is written into files: it must be the same in every build and every version.
+//! Our own digest, because it is stored in files and must be the same in every build and every version.
 
 use nima_machine::{
     messages::{Event, Tick},
@@ -9,14 +9,14 @@ use nima_machine::{
 
 use crate::codec::{Put, Sink, Source, Take, Wrong, record};
 
-/// A part of a tick, in the order in which the loop makes them.
+/// A stage of a tick, in the order in which the loop computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// The force at the tip, from the sensor and its calibrations.
     ForcePath,
     /// The identification at the follower.
     Identification,
-    /// The forces that the leader makes.
+    /// The forces computed at the leader.
     Rendering,
     /// The gates, and the force that they let through.
     Gates,
@@ -24,14 +24,12 @@ pub enum Stage {
     State,
 }
 
-/// Number of stages.
 pub const STAGES: usize = 5;
 
 impl Stage {
     /// Every stage, in the order of the loop.
     pub const ALL: [Self; STAGES] = [Self::ForcePath, Self::Identification, Self::Rendering, Self::Gates, Self::State];
 
-    /// Its name, for a message.
     pub const fn name(self) -> &'static str {
         match self {
             Self::ForcePath => "force at the tip",
@@ -43,19 +41,18 @@ impl Stage {
     }
 }
 
-/// What a journal keeps of the outputs of a tick.
+/// The digest of a tick's outputs, as stored in a journal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Check {
-    /// Digest of everything.
+    /// Digest of all outputs.
     pub all: u64,
-    /// Sixteen bits of the digest of each stage of each side: they only tell where a difference is.
+    /// Sixteen bits of the digest of each stage of each side; they only locate a difference.
     pub stages: [[u16; STAGES]; SIDES],
 }
 
 record!(Check { all: u64, stages: [[u16; STAGES]; SIDES] });
 
 impl Check {
-    /// The digest of a tick.
     pub fn of<'a>(
         events: impl Iterator<Item = &'a Event>,
         outputs: &[Outputs; SIDES],
@@ -64,7 +61,7 @@ impl Check {
         Self::of_sides(events, Side::ALL.map(|side| of_side(&outputs[side.index()], ticks[side.index()].as_ref())))
     }
 
-    /// The same from the digests of both sides.
+    /// Returns the digest of a tick from the digests of both sides.
     pub(crate) fn of_sides<'a>(events: impl Iterator<Item = &'a Event>, sides: [[u64; STAGES]; SIDES]) -> Self {
         let mut all = Digest::default();
         events.for_each(|event| event.put(&mut all));
@@ -72,8 +69,9 @@ impl Check {
         Self { all: all.end(), stages: sides.map(|side| side.map(|digest| digest as u16)) }
     }
 
-    /// The first stage, in the order of the loop, whose digest differs, and its side. Where only the sum of all differs, it is
-    /// an event, or a stage whose sixteen bits are the same by chance: then nothing.
+    /// Returns the first stage, in the order of the loop, whose digest differs, and its side. `None` if only the
+    /// overall digest differs: then the difference is in an event, or in a stage whose sixteen bits are equal by
+    /// chance.
     pub fn differs(&self, other: &Self) -> Option<(Side, Stage)> {
         let places = Stage::ALL.into_iter().enumerate().flat_map(|(k, stage)| Side::ALL.map(|side| (k, side, stage)));
         places
@@ -87,14 +85,14 @@ macro_rules! put_all {
     ($to:ident: $($value:ident),*) => { $($value.put($to);)* };
 }
 
-/// The digest of each stage of one side.
+/// Returns the digest of each stage of one side.
 pub(crate) fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
     let mut digests: [Digest; STAGES] = Default::default();
     let [force_path, identifies, renders, gated, stated] = &mut digests;
     outputs.put(stated);
     tick.is_some().put(stated);
     if let Some(tick) = tick {
-        // Without `..`: a field that is added does not compile until it is handled here.
+        // Without `..`, so that a new field does not compile until it is handled here.
         let Tick {
             index,
             side,
@@ -121,7 +119,7 @@ pub(crate) fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
             work_s,
             sample_to_force_s,
             missed,
-            // Counted by the queue to the screen, not made by the loop.
+            // Counted by the queue to the screen, not computed by the loop.
             dropped: _,
         } = tick;
         put_all!(force_path: force, measured_n);
@@ -134,7 +132,6 @@ pub(crate) fn of_side(outputs: &Outputs, tick: Option<&Tick>) -> [u64; STAGES] {
     digests.map(Digest::end)
 }
 
-/// The digest of bytes.
 pub(crate) fn digest_of_bytes(bytes: &[u8]) -> u64 {
     let mut digest = Digest::default();
     for chunk in bytes.chunks(8) {
@@ -144,7 +141,7 @@ pub(crate) fn digest_of_bytes(bytes: &[u8]) -> u64 {
     digest.end()
 }
 
-/// Words mixed into 64 bits. Two lanes, so that one does not wait for the other.
+/// Mixes words into 64 bits. Two lanes, so that consecutive words do not wait for each other.
 #[derive(Clone, Copy, Debug)]
 struct Digest {
     lanes: [u64; 2],
@@ -217,6 +214,6 @@ mod tests {
         assert_eq!(digest(&[1, 2, 3]), FIRST);
     }
 
-    /// Of this program's first version with journals: if it changes, the journal's version must.
+    /// From this program's first version with journals. If this digest changes, the journal's version must change too.
     const FIRST: u64 = 14_529_145_522_030_561_626;
 }

@@ -19,80 +19,74 @@ use crate::{
     topics::{HAPPENING_LINE, MARK_LINE},
 };
 
-/// A session file.
 pub struct Recorded(Arc<Reader>);
 
-/// Messages of the journal that are read before the loop needs them: a second of the session from a keyframe, ...
+/// Number of journal messages read ahead of the loop: one second of the session when starting from a keyframe, ...
 const AHEAD: usize = 5;
-/// ... and as many as are stepped at once from the beginning.
+/// ... and as many as are stepped at once when starting from the beginning.
 const FAR_AHEAD: usize = 80;
 
-/// The chunk of a keyframe's last block is found by its time; rounding must not miss it.
+/// The chunk of a keyframe's last block is found by its time; the margin allows for rounding.
 const MARGIN_NS: u64 = 1_000_000;
 
-/// A line of the log of a session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Its time, ns since 1970 (UTC).
+    /// ns since 1970 (UTC).
     pub time_ns: u64,
-    /// What it is about.
+    /// Kind of event.
     pub kind: LineKind,
-    /// What happened, in English.
+    /// English text.
     pub words: String,
-    /// The same as a value; `None` in a session of an earlier version, and where a name may be in the words.
+    /// The same as a value; `None` in a session of an earlier version, and where the text may contain a name.
     pub value: Option<Logged>,
 }
 
-/// What a line of the log is about, the most urgent first.
+/// Kind of a log line, the most urgent first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LineKind {
-    /// A fault.
     Fault,
     /// A moment that the operator marked.
     Mark,
     /// A warning: a command that was refused, or an alarm of the screen.
     Warning,
-    /// Something that happened to the objects of the scene.
+    /// An event of the scene's objects.
     Happening,
-    /// A change of state, a command, a device that came or went.
+    /// A change of state, a command, a device that connected or disconnected.
     Told,
 }
 
-/// What a session file tells of itself at once.
+/// Summary of a session file that is available without replaying it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
-    /// When it began (UTC, ISO 8601).
+    /// Begin (UTC, ISO 8601).
     pub started: Option<String>,
     /// Name of the rig.
     pub rig: Option<String>,
-    /// Its end, s since it began.
+    /// End, s since the session's begin.
     pub seconds: f64,
-    /// Of a stretch of a session: where it begins, s since the session began.
+    /// Begin of an excerpt, s since the session's begin; `None` for a whole session.
     pub stretch_from_s: Option<f64>,
 }
 
 impl About {
-    /// The length of what is in the file, s.
+    /// Returns the duration of the file's contents, s.
     pub fn length_s(&self) -> f64 {
         self.seconds - self.stretch_from_s.unwrap_or_default()
     }
 }
 
 impl Recorded {
-    /// Opens it.
-    ///
     /// # Errors
-    /// [`ReadError`] if it is no session file, or damaged.
+    /// [`ReadError`] if it is not a session file or is damaged.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         Reader::open(path).map(|reader| Self(Arc::new(reader)))
     }
 
-    /// The file.
     pub fn reader(&self) -> &Reader {
         &self.0
     }
 
-    /// When and on what it was recorded, and how long it is.
+    /// Returns when and on which rig it was recorded, and its duration.
     ///
     /// # Errors
     /// [`ReadError`] if its tables cannot be read.
@@ -107,7 +101,7 @@ impl Recorded {
         Ok(About { started: told("started"), rig: told("rig"), seconds, stretch_from_s })
     }
 
-    /// Whether the recording was closed: if not, it goes on, or the program was killed, or the file was cut.
+    /// Whether the recording was closed. If not, it is still running, the program was killed, or the file was cut.
     ///
     /// # Errors
     /// [`ReadError`] if the end cannot be read.
@@ -117,7 +111,7 @@ impl Recorded {
         Ok(end.is_some_and(|end| matches!(decode(end.data()), Ok((_, Message::End(_))))))
     }
 
-    /// The lines of the log between these times (ns).
+    /// Returns the lines of the log between these times (ns).
     ///
     /// # Errors
     /// [`ReadError`] if the log cannot be read.
@@ -138,7 +132,7 @@ impl Recorded {
         self.0.messages(&["log"], times_ns).map(line).filter_map(Result::transpose).collect()
     }
 
-    /// Time (ns) and words of the last error in the log.
+    /// Returns time (ns) and text of the last error in the log.
     ///
     /// # Errors
     /// [`ReadError`] if the log cannot be read.
@@ -152,15 +146,13 @@ impl Recorded {
         Ok(last)
     }
 
-    /// Its journal.
-    ///
     /// # Errors
-    /// [`ReplayError`] if it has none, or its beginning cannot be read.
+    /// [`ReplayError`] if it has no journal or the journal's beginning cannot be read.
     pub fn journal(&self) -> Result<Journal<Messages>, ReplayError> {
         Journal::open(ahead(Arc::clone(&self.0), 0, 0, FAR_AHEAD))
     }
 
-    /// A loop at this keyframe of its journal, which begins like this. `begin_ns` is when the session began.
+    /// Returns a loop at this keyframe of its journal, whose beginning is `start`. `begin_ns` is the session's begin.
     pub fn cursor(&self, start: &Start, keyframe: Keyframe, begin_ns: u64) -> Cursor<Messages> {
         let from_ns = (begin_ns + (keyframe.t_s() * 1e9) as u64).saturating_sub(MARGIN_NS);
         let messages = ahead(Arc::clone(&self.0), from_ns, keyframe.read(), AHEAD);
@@ -168,8 +160,8 @@ impl Recorded {
     }
 }
 
-/// The messages of a journal in this file from this time on, behind the first `read`. A thread of its own reads and decodes them, while
-/// the loop is fed from those before. It ends when nobody takes any more.
+/// Reads the messages of a journal from this time on, after the first `read` messages. A separate thread reads and
+/// decodes them ahead of the loop; it ends when the receiver is dropped.
 fn ahead(file: Arc<Reader>, from_ns: u64, read: u64, most: usize) -> Messages {
     let (send, receive) = bounded(most);
     let go_ahead = move || {

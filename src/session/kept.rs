@@ -1,4 +1,4 @@
-//! What a session file tells of the calibrations in force, for readers who do not replay it.
+//! Describes the active calibrations in a session file, for readers that do not replay it.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use crate::digest::digest_of_bytes;
 
 /// Entries whose values are one of [`verdicts`], ...
 pub(crate) const VERDICTS: [&str; 2] = ["gravity_verdict", "network_verdict"];
-/// ... and those whose values are numbers: none of them tells who, where or when.
+/// ... and entries whose values are numbers. None of them reveals a person, place or date.
 pub(crate) const FIGURES: [&str; 5] =
     ["gravity_error_n", "gravity_poses", "network_error_n", "network_rows", "network_doubt_share"];
 const UNCHECKED: &str = "never checked on new data";
 
-/// Keys and values for the calibrations of a side.
+/// Returns keys and values for the calibrations of a side.
 pub(crate) fn described(calibrations: &Calibrations) -> BTreeMap<String, String> {
     let Calibrations { gravity, tip_force, gravity_check } = calibrations;
     let mut told = BTreeMap::new();
@@ -35,7 +35,7 @@ pub(crate) fn described(calibrations: &Calibrations) -> BTreeMap<String, String>
             tell(key, value.clone().unwrap_or_default());
         }
         tell("network_date", origin.date.clone());
-        // The bytes are those of the network's file.
+        // The same bytes as in the network's file.
         if let Ok(bytes) = model_to_bytes(model) {
             tell("network_digest", format!("{:016x}", digest_of_bytes(&bytes)));
         }
@@ -51,13 +51,14 @@ pub(crate) fn described(calibrations: &Calibrations) -> BTreeMap<String, String>
     told
 }
 
-/// Every value of a verdict in a session.
+/// Returns every possible value of a verdict in a session.
 pub(crate) fn verdicts() -> impl Iterator<Item = &'static str> {
     let all = [Verdict::Accepted, Verdict::InsufficientMotion, Verdict::PoorData];
     all.into_iter().flat_map(|verdict| [false, true].map(|kept| verdict_words(verdict, kept))).chain([UNCHECKED])
 }
 
-/// A verdict, and whether somebody keeps the calibration in spite of it. The name of the person is in no session.
+/// Returns the text of a verdict, and whether a person has overridden it. The person's name is never stored in a
+/// session.
 const fn verdict_words(verdict: Verdict, is_overridden: bool) -> &'static str {
     match (verdict, is_overridden) {
         (Verdict::Accepted, _) => "accepted",

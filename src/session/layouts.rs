@@ -1,4 +1,4 @@
-//! What a viewer shows of a session at first: a layout for Foxglove and one for `PlotJuggler`, attached to every session.
+//! Initial layouts for viewing a session in Foxglove and `PlotJuggler`, attached to every session.
 
 use std::fmt::Write as _;
 
@@ -10,16 +10,16 @@ use crate::{
     topics::{ARROWS_TOPIC, FORCES, FRAMES_TOPIC, LOG_TOPIC, MARKS_TOPIC, OF_GATES, RINGS_TOPIC, gates},
 };
 
-/// Names of the attachments.
+/// Name of the attachment.
 pub const FOXGLOVE: &str = "layout.foxglove.json";
-/// See [`FOXGLOVE`].
+/// Name of the attachment.
 pub const PLOTJUGGLER: &str = "layout.plotjuggler.xml";
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// The forces of a plot, with their colours: at the tissue, as the link delivers it, in the hand.
+/// The forces of a plot with their colours: at the tissue, after the link, in the hand.
 const CURVES: [(&str, &str); 3] = [("measured", "#2f6fb4"), ("delayed", "#8a8f98"), ("rendered", "#d2641e")];
 
-/// Both, for a session of these arms.
+/// Returns both layouts, for a session of these arms.
 pub(crate) fn layouts(sides: [bool; SIDES]) -> [Attached; 2] {
     let file = |name: &str, media_type: &str, text: String| Attached {
         name: name.to_owned(),
@@ -33,7 +33,7 @@ pub(crate) fn layouts(sides: [bool; SIDES]) -> [Attached; 2] {
     ]
 }
 
-/// Place of a force in the message of its topic.
+/// Returns the index of a force in the message of its topic.
 fn place(curve: &str, axis: &str) -> Option<usize> {
     FORCES.iter().position(|name| *name == format!("{curve}.{axis}_n"))
 }
@@ -87,7 +87,7 @@ fn foxglove(sides: &[Side]) -> Value {
     })
 }
 
-/// Panels side by side, or one below the other, of the same size.
+/// Arranges panels of equal size side by side, or one below the other.
 fn split(direction: &str, mut panels: Vec<Value>) -> Value {
     let first = if panels.is_empty() { Value::Null } else { panels.remove(0) };
     if panels.is_empty() {
@@ -102,7 +102,7 @@ fn plotjuggler(sides: &[Side]) -> String {
         "<?xml version='1.0' encoding='UTF-8'?>\n<root>\n <tabbed_widget parent=\"main_window\" name=\"Main Window\">\n",
     );
     for side in sides.iter().map(|side| side.word()) {
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(out, "  <Tab tab_name=\"{side} arm, forces (N)\" containers=\"1\">\n   <Container>");
         let sizes = ["0.333333"; AXES.len()].join(";");
         let _ = writeln!(out, "    <DockSplitter orientation=\"-\" count=\"{}\" sizes=\"{sizes}\">", AXES.len());
@@ -127,7 +127,7 @@ fn plotjuggler(sides: &[Side]) -> String {
 mod tests {
     use super::*;
 
-    /// Topics and fields that a Foxglove layout asks for.
+    /// Returns the topics and fields that a Foxglove layout uses.
     fn asked(layout: &Value) -> Vec<String> {
         let panels = layout["configById"].as_object().unwrap();
         let of = |panel: &Value| {

@@ -2,25 +2,25 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `codec` | values of the loop as words, exact to the bit |
-//! | `digest` | what a replay compares |
+//! | `codec` | values of the loop as 64-bit words, exact to the bit |
+//! | `digest` | digests of the values that a replay compares |
 //! | `journal` | the messages from which the loop is replayed |
-//! | `scribe` | what passes the tap of a loop, as these messages |
-//! | `recorder` | the thread that writes them, and what is plotted, into a session file |
-//! | `layouts` | what a viewer shows of a session at first |
-//! | `objects` | where the rings of a scene are, what its jaws do, and what happens to them |
-//! | `pictures` | the endoscope's pictures, as they came |
-//! | `outlet` | where that goes: into the file, and to those who watch while it happens |
+//! | `scribe` | converts the events at the tap of a loop to these messages |
+//! | `recorder` | the thread that writes these messages and the plots into a session file |
+//! | `layouts` | initial layouts of a session for external viewers |
+//! | `objects` | positions of the rings of a scene, state of its jaws, and their events |
+//! | `pictures` | endoscope images, stored as received |
+//! | `outlet` | outputs of the recorder: the file, and live viewers |
 //! | `file` | the journal in a session file |
-//! | `plotted` | the plots of a session file, tick by tick, and what `nima identify` needs of them |
-//! | `cut` | a stretch of a session as a session file of its own |
-//! | `anonymous` | a session without what tells who recorded it, where and when |
-//! | `shelf` | the folder of a user's sessions: which are kept, and room for the next |
-//! | `outlook` | how long the disk has room for a session |
-//! | `report` | the figures of a session, from what is plotted of it |
-//! | `watched` | what a screen elsewhere is told of a loop while it runs |
-//! | `copied` | the file of a session, written elsewhere while it happens |
-//! | `replay` | the same loop, fed from them; and with one thing changed |
+//! | `plotted` | the plots of a session file, tick by tick, and the part that `nima identify` needs |
+//! | `cut` | copies a time range of a session into a new session file |
+//! | `anonymous` | removes from a session who recorded it, where and when |
+//! | `shelf` | the folder of a user's sessions: which are kept, and space for the next |
+//! | `outlook` | how long the free disk space lasts for a session |
+//! | `report` | figures of a session, computed from its plots |
+//! | `watched` | state of a running loop for remote screens |
+//! | `copied` | the file of a session, written on another machine while it is recorded |
+//! | `replay` | replays the loop from its messages, unchanged or with one change |
 
 pub mod anonymous;
 mod codec;

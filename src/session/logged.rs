@@ -1,22 +1,23 @@
-//! What a line of the log is about, as a value.
+//! The content of a log line as a value.
 //!
-//! A session has it beside the English text: another text, without names or in another language, is made from the value.
+//! A session stores it in addition to the English text, so that other texts, without names or in another language, can
+//! be built from it.
 
 use nima_core::task::Event as Happening;
 use nima_machine::{messages::Event, runtime::Operation};
 
 use crate::codec::{Put, Sink, Source, Take, Wrong, choice, number, take_number};
 
-/// The value of a line. No name that a person gave is in it.
+/// The value of a line. It never contains a name that a person gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Logged {
-    /// Something that the loop told.
+    /// An event reported by the loop.
     Event(Event),
-    /// Something that was done to the loop.
+    /// An operation on the loop.
     Operation(Operation),
-    /// Something that happened to the objects of a scene.
+    /// An event of the scene's objects.
     Happening(Happening),
-    /// A text of the screen in which no name can be.
+    /// A text of the screen that cannot contain a name.
     Screen,
 }
 
@@ -27,11 +28,11 @@ choice!(Logged {
     3 => Screen {},
 });
 
-/// First number of a value: which way of writing follows.
+/// First word of a value: version of the encoding that follows.
 const VERSION: u64 = 1;
 
 impl Logged {
-    /// Its bytes in a session.
+    /// Returns its bytes for a session.
     pub(crate) fn encode(&self) -> Vec<u8> {
         let mut words = vec![VERSION];
         self.put(&mut words);
@@ -42,7 +43,7 @@ impl Logged {
         bytes
     }
 
-    /// The value of these bytes; `None` for one that this program does not know.
+    /// Decodes a value; `None` for a value that this program does not support.
     pub(crate) fn decode(mut bytes: &[u8]) -> Option<Self> {
         let mut words = Vec::new();
         while !bytes.is_empty() {

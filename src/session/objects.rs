@@ -1,7 +1,8 @@
-//! Objects of a scene in a session: where rings are, what jaws do, what happens to them, and how far the task has come.
+//! Objects of a scene in a session: positions of rings, state of jaws, events, and progress of the task.
 //!
-//! They come from a simulation beside the loop and are no input of it, so the journal and its replay know nothing of them. What is recorded
-//! is told by an [`ObjectSource`]; [`happenings`], [`openings`] and [`at`] read it again.
+//! They come from a simulation outside the loop and are not an input of the loop, so the journal and its replay do not
+//! include them. An [`ObjectSource`] provides them for the recording; [`happenings`], [`openings`] and [`at`] read them
+//! back.
 
 mod happening;
 
@@ -23,56 +24,55 @@ use crate::{
     },
 };
 
-/// A moment on the screen shows objects that are at most so old, ns.
+/// Maximum age of the objects shown for a moment, ns.
 const STALE_NS: u64 = 200_000_000;
 
-/// Jaws of an instrument, and what acts on it. Frame `world`.
+/// Jaws of an instrument, and the forces on it. Frame `world`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jaws {
     /// Angle between the fingers, rad.
     pub opening_rad: f64,
-    /// Force that opens them, N at the end of a finger; negative if it closes them.
+    /// Opening force at the end of a finger, N; negative if it closes the jaws.
     pub opens_n: f64,
-    /// Force of all contacts on the instrument, N.
+    /// Total force of all contacts on the instrument, N.
     pub force_n: Vector3<f64>,
     /// Their torque about its tip, N m.
     pub torque_nm: Vector3<f64>,
-    /// Whether a ring, a peg, the board and another instrument touch it.
+    /// Contact with a ring, a peg, the board and another instrument.
     pub touched: [bool; 4],
 }
 
-/// A place that was marked as a lump. Frame `world`.
+/// A position that was marked as a lump. Frame `world`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    /// Where, on the tissue at rest, m.
+    /// On the tissue at rest, m.
     pub at_m: Vector3<f64>,
-    /// Whether a lump lies there.
+    /// Whether there is a lump.
     pub is_true: bool,
 }
 
-/// The loop of an instrument, and the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WireLoop {
-    /// It touches the wire.
+    /// Whether it touches the wire.
     pub touches: bool,
-    /// The wire goes through it.
+    /// Whether the wire passes through it.
     pub on_wire: bool,
 }
 
-/// How far the task of a scene has come, at one time.
+/// Progress of a scene's task at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Standing {
-    /// The trial is over.
+    /// Whether the trial is over.
     pub ended: bool,
-    /// Share of the way along the wire that is done, 0 to 1.
+    /// Completed fraction of the path along the wire, 0 to 1.
     pub share: f64,
-    /// How many places were marked, and how many different lumps are among them.
+    /// Number of marked positions, and number of different lumps among them.
     pub marked: u32,
     /// See `marked`.
     pub found: u32,
-    /// How often loops touched the wire.
+    /// Number of contacts between loops and wire.
     pub touches: u32,
-    /// How often rings were handed over in mid-air, put on pegs, and dropped, in view or out of it.
+    /// Number of rings passed between instruments in mid-air, placed on pegs, and dropped, in or out of view.
     pub passed: u32,
     /// See `passed`.
     pub placed: u32,
@@ -80,7 +80,7 @@ pub struct Standing {
     pub dropped: u32,
     /// The loop of each instrument.
     pub loops: [WireLoop; SIDES],
-    /// The places that were marked, in their order; the first ones, if there are very many.
+    /// The marked positions in their order; only the first ones if there are very many.
     pub marks: Vec<Mark>,
 }
 
@@ -89,24 +89,25 @@ pub struct Standing {
 pub struct Objects {
     /// Time of the loop, s.
     pub t_s: f64,
-    /// Middle and orientation of each ring, m, by its number; z is the axis through the hole. `None`: out of view, or there is none.
+    /// Centre and orientation of each ring, m, by its number; z is the axis through the ring. `None` if it is out of
+    /// view or does not exist.
     pub rings: Vec<Option<Isometry3<f64>>>,
-    /// Jaws of each side; `None`: an instrument without jaws, or none.
+    /// Jaws of each side; `None` for an instrument without jaws, or none.
     pub jaws: [Option<Jaws>; SIDES],
-    /// How far the task has come; `None`: not told.
+    /// Progress of the task; `None` if unknown.
     pub task: Option<Standing>,
 }
 
-/// Who tells a recording of objects: a simulation. It is asked on the recorder's thread and must not wait.
+/// Provides objects for a recording: a simulation. Called on the recorder's thread; must not wait.
 pub trait ObjectSource: Send + Debug {
-    /// The next moment, in the order of time, if there is one.
+    /// Returns the next state, in the order of time, if there is one.
     fn moment(&mut self) -> Option<Objects>;
 
-    /// What happened next, in the order of time, if anything did.
+    /// Returns the next event, in the order of time, if there is one.
     fn happening(&mut self) -> Option<Happening>;
 }
 
-/// Whether happenings were told to the recording of this session, however many.
+/// Whether the recording of this session had a source of events, even if none occurred.
 pub fn are_told(reader: &Reader) -> bool {
     has(reader, HAPPENINGS_TOPIC)
 }
@@ -124,8 +125,8 @@ fn has(reader: &Reader, topic: &str) -> bool {
     reader.channels().iter().any(|channel| channel.topic == topic)
 }
 
-/// What happened between these times (ns since 1970), at seconds since the session began. What a later version tells and this one does not
-/// know is left out.
+/// Returns the events between these times (ns since 1970), with their seconds since the session's begin. Kinds of
+/// events that a later version adds are left out.
 ///
 /// # Errors
 /// [`ReadError`] if the session cannot be read.
@@ -140,7 +141,7 @@ pub fn happenings(reader: &Reader, times_ns: Range<u64>) -> Result<Vec<Happening
     Ok(all)
 }
 
-/// How far the jaws of this side were open between these times (ns since 1970): seconds since the session began, rad.
+/// Returns the opening of this side's jaws between these times (ns since 1970): seconds since the session's begin, rad.
 ///
 /// # Errors
 /// [`ReadError`] if the session cannot be read.
@@ -157,7 +158,8 @@ pub fn openings(reader: &Reader, side: Side, times_ns: Range<u64>) -> Result<Vec
     Ok(all)
 }
 
-/// The objects at this time (ns since 1970) of a session that began at `begin_ns`; `None` if nothing was told of them shortly before.
+/// Returns the objects at this time (ns since 1970) of a session that began at `begin_ns`; `None` if there is no recent
+/// state of them.
 ///
 /// # Errors
 /// [`ReadError`] if the session cannot be read.

@@ -1,6 +1,6 @@
-//! Where the topics of a session go: into its file, and to those who watch while it happens.
+//! Distributes the topics of a session to its file and to live viewers.
 //!
-//! When the file can no longer be written, the recording has ended; those who watch continue to get everything.
+//! If the file can no longer be written, the recording ends, but live viewers continue to receive everything.
 
 use std::{
     collections::BTreeMap,
@@ -19,75 +19,70 @@ use crate::{
     recorder::{Attached, RecordError, Sync},
 };
 
-/// Where a recorder writes to. With nothing, it only empties the tap.
+/// Destinations of a recorder. Without any, it only empties the tap.
 #[derive(Debug, Default)]
 pub struct Destination<'a> {
-    /// A new session file.
     pub file: Option<&'a Path>,
-    /// Those who watch.
+    /// Live viewers.
     pub audiences: Vec<Box<dyn Audience>>,
 }
 
 impl<'a> Destination<'a> {
-    /// A file alone.
     pub fn file(path: &'a Path) -> Self {
         Self { file: Some(path), ..Self::default() }
     }
 }
 
-/// Those who watch a session while it happens: they get all that its file gets. Called on the recorder's thread, which must not wait for
-/// them.
+/// A live viewer of a session: receives everything that its file receives. Called on the recorder's thread, which must
+/// not wait.
 pub trait Audience: Send + Debug {
-    /// A session begins, recorded by this program; its loop's clock began at this time (ns since 1970).
+    /// Called when a session begins, recorded by this program; its loop's clock started at this time (ns since 1970).
     fn begins(&mut self, _program: &str, _started_ns: u64) {}
 
-    /// Named values.
     fn metadata(&mut self, _name: &str, _entries: &BTreeMap<String, String>) {}
 
-    /// A whole file.
+    /// Called for a whole file.
     fn attachment(&mut self, _time_ns: u64, _attached: &Attached) {}
 
-    /// A new channel. Its number is the count of those before it. Pictures are in the file alone.
+    /// Called for a new channel. Channels are numbered from 0 in the order of these calls. Images are only in the file.
     fn channel(&mut self, topic: &str, encoding: &Encoding);
 
-    /// A message of a channel, with the time of its sample (ns since 1970).
+    /// Called for a message of a channel, with the time of its sample (ns since 1970).
     fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]);
 
-    /// A tick as the screen sees it, and the events that were told in it. All of it is in the journal too.
+    /// Called for a tick as the screen shows it, with the events reported in it. All of it is in the journal too.
     fn tick(&mut self, _t_s: f64, _ticks: &[Option<Tick>; SIDES], _events: &[Event]) {}
 
-    /// The objects of a scene, before the tick of their time. Their messages come besides.
+    /// Called for the objects of a scene, before the tick of their time. Their messages follow separately.
     fn objects(&mut self, _objects: &Objects) {}
 }
 
-/// A channel of an outlet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channel(usize);
 
-/// A channel of the file alone: those who watch are not told of it.
+/// A channel of the file that viewers do not receive.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FileChannel(usize);
 
-/// A channel, as the file knows it.
 struct Known {
     of_file: Option<ChannelId>,
-    /// Its number for those who watch; `None` if it is not for them.
+    /// Its number for viewers; `None` if they do not receive it.
     of_audiences: Option<usize>,
 }
 
-/// The file, if there is one, and the audiences.
+/// The optional file, and the viewers.
 pub(crate) struct Outlet {
     file: Option<Writer>,
     channels: Vec<Known>,
     audiences: Vec<Box<dyn Audience>>,
-    /// Keeps the file at this path on the disk; without it, the caller gets the errors of the file.
+    /// Writes the file at this path to the disk; if absent, the caller gets the errors of the file.
     sync: Option<(PathBuf, Sync)>,
-    /// Why the file has ended, until that is told.
+    /// Why the file has ended, until it has been reported.
     trouble: Option<RecordError>,
 }
 
 impl Outlet {
-    /// Begins the file. If it fails later, [`Outlet::trouble`] tells why.
+    /// Begins the file. If the file fails later, [`Outlet::trouble`] returns why.
     pub(crate) fn create(to: Destination<'_>, program: &str, started_ns: u64) -> Result<Self, RecordError> {
         let Destination { file: path, mut audiences } = to;
         let file = path.map(|path| Writer::create(path, program)).transpose()?;
@@ -102,17 +97,17 @@ impl Outlet {
         Ok(Self { file, channels: Vec::new(), audiences, sync, trouble: None })
     }
 
-    /// A file alone, which was begun before.
+    /// A file that was begun earlier, without viewers.
     pub(crate) const fn of(file: Writer) -> Self {
         Self { file: Some(file), channels: Vec::new(), audiences: Vec::new(), sync: None, trouble: None }
     }
 
-    /// Whether anybody takes what is written.
+    /// Whether any destination receives what is written.
     pub(crate) const fn is_heard(&self) -> bool {
         self.file.is_some() || !self.audiences.is_empty()
     }
 
-    /// A channel of the file and of those who watch.
+    /// Opens a channel for the file and the viewers.
     pub(crate) fn channel(&mut self, topic: &str, encoding: Encoding) -> Result<Channel, WriteError> {
         for audience in &mut self.audiences {
             audience.channel(topic, &encoding);
@@ -121,7 +116,7 @@ impl Outlet {
         Ok(Channel(self.add(topic, encoding, Some(number))?))
     }
 
-    /// A channel of the file alone.
+    /// Opens a channel for the file only.
     pub(crate) fn file_channel(&mut self, topic: &str, encoding: Encoding) -> Result<FileChannel, WriteError> {
         Ok(FileChannel(self.add(topic, encoding, None)?))
     }
@@ -141,7 +136,7 @@ impl Outlet {
         self.file_message(FileChannel(channel.0), log_time_ns, data)
     }
 
-    /// Writes a message into the file alone.
+    /// Writes a message to the file only.
     pub(crate) fn file_message(
         &mut self,
         channel: FileChannel,
@@ -154,14 +149,14 @@ impl Outlet {
         self.or_end(written)
     }
 
-    /// A tick, for those who watch; the file has it in its journal.
+    /// Passes a tick to the viewers; the file has it in its journal.
     pub(crate) fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], events: &[Event]) {
         for audience in &mut self.audiences {
             audience.tick(t_s, ticks, events);
         }
     }
 
-    /// Objects of a scene, for those who watch; the file has them in its messages.
+    /// Passes objects of a scene to the viewers; the file has them in its messages.
     pub(crate) fn objects(&mut self, objects: &Objects) {
         for audience in &mut self.audiences {
             audience.objects(objects);
@@ -189,7 +184,6 @@ impl Outlet {
         self.or_end(written)
     }
 
-    /// Bytes in the file.
     pub(crate) fn bytes(&self) -> u64 {
         self.file.as_ref().map_or(0, |file| file.bytes().1)
     }
@@ -200,13 +194,13 @@ impl Outlet {
         self.or_end(written)
     }
 
-    /// Ends the file; how many messages are in it.
+    /// Closes the file and returns its number of messages.
     pub(crate) fn finish(mut self) -> Result<u64, WriteError> {
         let Some(file) = self.file.take() else { return Ok(0) };
         Ok(file.finish()?.messages)
     }
 
-    /// Checks whether the disk has taken what was written; to be called now and then.
+    /// Checks whether the disk has accepted the data; call it regularly.
     pub(crate) fn look(&mut self) {
         let Some((path, sync)) = &self.sync else { return };
         if let Some(source) = sync.failed() {
@@ -215,7 +209,7 @@ impl Outlet {
         }
     }
 
-    /// Why the file has ended by itself; told once.
+    /// Returns once why the file has ended by itself.
     pub(crate) fn trouble(&mut self) -> Option<RecordError> {
         self.trouble.take()
     }
@@ -230,9 +224,9 @@ impl Outlet {
         }
     }
 
-    /// The file has failed: there are only those who watch from now on.
+    /// Ends the file after a failure; only the viewers remain.
     fn give_up(&mut self, why: RecordError) {
-        // It may hang in the system as long as the disk does.
+        // The file may hang in the system as long as the disk does.
         if let Some((_, sync)) = self.sync.take() {
             sync.leave();
         }

@@ -1,4 +1,4 @@
-//! How long the disk has room for a session that is being recorded.
+//! Predicts how long the disk has room for a running recording.
 
 use std::{
     path::{Path, PathBuf},
@@ -7,39 +7,39 @@ use std::{
 
 use crate::shelf::free_bytes;
 
-/// A disk that will be full within this time is told: a day ahead, so that somebody can free space before the next working day.
+/// Warn if the disk will be full within this time: a day, so that space can be freed before the next working day.
 pub const WARN_BEFORE: Duration = Duration::from_hours(24);
-/// A session must have grown for this long before its rate says anything of a day.
+/// The rate of a session is meaningful only after it has grown for this long.
 const GROWN: Duration = Duration::from_mins(1);
 
-/// The growth of a session's file.
 #[derive(Debug)]
 pub struct Outlook {
     file: PathBuf,
     since: Instant,
-    /// Its bytes then.
+    /// Bytes at that time.
     bytes: u64,
 }
 
 impl Outlook {
-    /// A file with so many bytes now.
+    /// Starts with the current size of the file.
     pub fn new(file: &Path, bytes: u64, now: Instant) -> Self {
         Self { file: file.to_owned(), since: now, bytes }
     }
 
-    /// The time until the disk is full, if the file, which has so many bytes now, goes on growing as it has so far; `others` are bytes
-    /// that are freed for it. `None` in its first minute, and where the system does not say how much is free.
+    /// Returns the time until the disk is full if the file, whose size is now `bytes`, continues to grow at its average
+    /// rate; `others` are bytes that will be freed for it. `None` in its first minute, and if the system does not
+    /// report the free space.
     pub fn full_in(&self, bytes: u64, others: u64, now: Instant) -> Option<Duration> {
         let grown = now.saturating_duration_since(self.since);
         if grown < GROWN {
             return None;
         }
-        // A bare name is in the present folder.
+        // A bare name is in the current folder.
         let folder =
             self.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
         let left = free_bytes(folder)?.saturating_add(others) as f64;
         let per_s = bytes.saturating_sub(self.bytes) as f64 / grown.as_secs_f64();
-        // A file that does not grow fills no disk.
+        // A file that does not grow never fills the disk.
         Duration::try_from_secs_f64(left / per_s).ok()
     }
 }
@@ -55,11 +55,11 @@ mod tests {
         let begin = Instant::now();
         let minute = Duration::from_mins(1);
         let outlook = Outlook::new(&folder.path().join("a.mcap"), 0, begin);
-        // In two minutes it has taken a part of the disk that leaves room for ten hours.
+        // In two minutes it has used a fraction of the disk that leaves room for ten hours.
         let bytes = free / 300;
-        assert_eq!(outlook.full_in(bytes / 4, 0, begin + minute / 2), None, "too early to tell");
+        assert_eq!(outlook.full_in(bytes / 4, 0, begin + minute / 2), None, "too early to predict");
         let hours = |lasts: Option<Duration>| lasts.unwrap().as_secs_f64() / 3600.0;
-        // Others use this disk too.
+        // Other programs use this disk too.
         let near = |hours: f64, expected: f64| (hours / expected - 1.0).abs() < 0.2;
         let lasts = hours(outlook.full_in(bytes, 0, begin + 2 * minute));
         assert!(near(lasts, 10.0), "{lasts} h");

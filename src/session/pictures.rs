@@ -1,7 +1,7 @@
-//! The endoscope's pictures in a session: as the camera compressed them, at the loop's time of their arrival.
+//! The endoscope images in a session: unmodified from the camera, with the loop's time of their arrival.
 //!
-//! They are no input of the loop, so the journal and its replay know nothing of them. What is recorded comes from a [`PictureSource`];
-//! [`Pictures`] reads it again.
+//! They are not an input of the loop, so the journal and its replay do not include them. A [`PictureSource`] provides
+//! them for the recording; [`Pictures`] reads them back.
 
 use std::{fmt::Debug, ops::Range, path::Path, time::Instant};
 
@@ -14,13 +14,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::plotted::beginning_ns;
 
-/// Topic of pictures that stand alone.
+/// Topic of independent images.
 pub const PICTURE_TOPIC: &str = "endoscope/picture";
-/// Topic of the pictures of a stream, which refer to those before them.
+/// Topic of a video stream, whose frames refer to earlier ones.
 pub const VIDEO_TOPIC: &str = "endoscope/video";
-/// Topic of what is told of each of them.
+/// Topic of the properties of each image.
 pub const PICTURE_FIGURES_TOPIC: &str = "endoscope/figures";
-/// The kind of its messages, and their description.
+/// Message type of that topic.
 pub(crate) const FIGURES_NAME: &str = "nima.PictureFigures";
 pub(crate) const FIGURES_SCHEMA: &str = r#"{
   "title": "nima.PictureFigures",
@@ -35,27 +35,27 @@ pub(crate) const FIGURES_SCHEMA: &str = r#"{
   "required": ["number", "bytes", "dropped"]
 }"#;
 
-/// Pictures are looked for this far back, ns: what is older was frozen for long.
+/// Images are searched this far back, ns; an older image would have been frozen for too long.
 const BACK_NS: u64 = 2_000_000_000;
-/// And read this far ahead, ns, so that a session that is played is not searched for each of them.
+/// Images are read this far ahead, ns, so that playback does not search the session for every image.
 const AHEAD_NS: u64 = 500_000_000;
 
-/// How far back a decoder may have to begin, ns: cameras send a picture that refers to no other every second or two, some every ten.
+/// How far back a decoder may have to begin, ns. Cameras send a key frame every second or two, some every ten.
 const LEAD_NS: u64 = 12_000_000_000;
-/// A decoder goes on where it stands rather than begin anew over so much, ns.
+/// A decoder continues over at most this much, ns, rather than restart at a key frame.
 const GOES_ON_NS: u64 = 1_000_000_000;
 
-/// How a picture is compressed.
+/// Compression of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
-    /// JPEG: it stands alone.
+    /// JPEG: an independent image.
     Jpeg,
-    /// H.264, annex B: it may refer to those before it.
+    /// H.264, annex B: a frame may refer to earlier ones.
     H264,
 }
 
 impl Coding {
-    /// As Foxglove names it.
+    /// The name that Foxglove uses.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Jpeg => "jpeg",
@@ -64,66 +64,63 @@ impl Coding {
     }
 }
 
-/// A picture on its way into a recording.
+/// An image on its way into a recording.
 #[derive(Clone, Debug)]
 pub struct Taken {
-    /// When its last byte was here.
+    /// Arrival of its last byte.
     pub arrived: Instant,
-    /// The camera's own stamp, s since some moment of its own.
+    /// The camera's own time stamp, s, from an arbitrary origin.
     pub camera_s: Option<f64>,
-    /// What its bytes are.
     pub coding: Coding,
-    /// As it came.
+    /// Unmodified from the camera.
     pub data: Vec<u8>,
 }
 
-/// Who hands pictures to a recording. Asked on the recorder's thread; must not wait, and must not keep more than it can.
+/// Provides images for a recording. Called on the recorder's thread; must not wait, and must bound its queue.
 pub trait PictureSource: Send + Debug {
-    /// The next picture, in the order of arrival.
+    /// Returns the next image, in the order of arrival.
     fn picture(&mut self) -> Option<Taken>;
 
-    /// How many found no room so far, because the recording was too slow.
+    /// Returns how many images have been dropped so far because the recording was too slow.
     fn dropped(&self) -> u64;
 }
 
-/// What is told of a recorded picture beside itself.
+/// Properties of a recorded image.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PictureFigures {
-    /// Pictures before it in this session.
+    /// Number of earlier images in this session.
     pub number: u64,
-    /// Its length.
+    /// Its size.
     pub bytes: u64,
-    /// Pictures that were not recorded so far.
+    /// Images that were not recorded so far.
     pub dropped: u64,
-    /// The camera's own stamp, s since some moment of its own.
+    /// The camera's own time stamp, s, from an arbitrary origin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera_s: Option<f64>,
 }
 
-/// A recorded picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded {
-    /// When it arrived, ns since 1970 as all times of a session.
+    /// Arrival, ns since 1970, like all times of a session.
     pub time_ns: u64,
-    /// What its bytes are.
     pub coding: Coding,
-    /// As it came.
+    /// Unmodified from the camera.
     pub data: Vec<u8>,
 }
 
-/// The loop's time of a moment of this computer. Estimated from when ticks are known here: the least delay counts.
+/// Converts this computer's time to the loop's time. Estimated from the arrival of ticks; the smallest delay counts.
 #[derive(Debug, Default)]
 pub(crate) struct LoopClock {
     begin: Option<Instant>,
-    /// This computer's time minus the loop's, s, and when it was last seen, s.
+    /// This computer's time minus the loop's, s, and when it was last observed, s.
     offset_s: Option<(f64, f64)>,
 }
 
-/// The loop's clock may run this much slower than the computer's.
+/// The loop's clock may run slower than the computer's by this factor.
 const DRIFT: f64 = 1e-3;
 
 impl LoopClock {
-    /// A tick of this time (s) is known now.
+    /// Notes the arrival of a tick of this time (s).
     pub(crate) fn note(&mut self, t_s: f64, now: Instant) {
         let now_s = now.duration_since(*self.begin.get_or_insert(now)).as_secs_f64();
         let offset_s = now_s - t_s;
@@ -131,7 +128,7 @@ impl LoopClock {
         self.offset_s = Some((least_s, now_s));
     }
 
-    /// The loop's time of a moment, s; before 0 where the loop had not begun.
+    /// Returns the loop's time of a moment, s; negative before the loop's start.
     pub(crate) fn at(&self, moment: Instant) -> Option<f64> {
         let begin = self.begin?;
         let (offset_s, _) = self.offset_s?;
@@ -143,20 +140,19 @@ impl LoopClock {
     }
 }
 
-/// Whether pictures are recorded in this session.
 pub fn are_recorded(reader: &Reader) -> bool {
     let is_one = |topic: &str| [PICTURE_TOPIC, VIDEO_TOPIC].contains(&topic);
     reader.channels().iter().any(|channel| is_one(&channel.topic) && channel.messages != Some(0))
 }
 
-/// The pictures of a session, by time. Keeps those around the last one that was asked for.
+/// The images of a session by time. Caches those around the last requested one.
 pub struct Pictures {
     reader: Reader,
     begin_ns: u64,
-    /// The channel of the stream, where there is one.
+    /// The channel of the video stream, if there is one.
     video: Option<ChannelId>,
     kept: Vec<Message>,
-    /// The times that are kept, ns.
+    /// Range of the cached times, ns.
     times_ns: Range<u64>,
 }
 
@@ -167,7 +163,7 @@ impl Debug for Pictures {
 }
 
 impl Pictures {
-    /// Opens the session again, for itself; `None` where it has no pictures.
+    /// Opens the session separately; `None` if it has no images.
     ///
     /// # Errors
     /// [`ReadError`] if it cannot be read.
@@ -181,20 +177,19 @@ impl Pictures {
         Ok(Some(Self { reader, begin_ns, video, kept: Vec::new(), times_ns: 0..0 }))
     }
 
-    /// When the session began, ns.
+    /// Begin of the session, ns.
     pub const fn begin_ns(&self) -> u64 {
         self.begin_ns
     }
 
-    /// The file.
     pub const fn reader(&self) -> &Reader {
         &self.reader
     }
 
-    /// The picture that was the newest at this time (s since the session began), if one came in the two seconds before.
+    /// Returns the newest image at this time (s since the session's begin), if it is at most two seconds old.
     ///
     /// # Errors
-    /// [`ReadError`] if it cannot be read. What comes later can be asked for all the same.
+    /// [`ReadError`] if it cannot be read. Later images can be requested all the same.
     pub fn at(&mut self, t_s: f64) -> Result<Option<Recorded>, ReadError> {
         let time_ns = self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64;
         let wanted_ns = time_ns.saturating_sub(BACK_NS)..time_ns.saturating_add(1);
@@ -210,8 +205,9 @@ impl Pictures {
         Ok(newest.filter(|message| wanted_ns.contains(&message.log_time_ns())).and_then(|message| self.read(message)))
     }
 
-    /// The pictures of the stream that a decoder needs to show the one of this time, which is the last of them: those since one that refers to no
-    /// other (`is_key` tells which), or those after `known_ns`, where the decoder stands, if that is shortly before. Empty where it cannot be shown.
+    /// Returns the frames that a decoder needs to show the frame of this time, which is the last of them: those from
+    /// the last key frame on (`is_key` detects key frames), or those after `known_ns`, the decoder's position, if that
+    /// is shortly before. Empty if the frame cannot be shown.
     ///
     /// # Errors
     /// [`ReadError`] if they cannot be read.
@@ -235,7 +231,7 @@ impl Pictures {
         Ok(pictures)
     }
 
-    /// The picture of a message; `None` for one of another program that is none.
+    /// Returns the image of a message; `None` if a message of another program is not an image.
     fn read(&self, message: &Message) -> Option<Recorded> {
         let time_ns = message.log_time_ns();
         if Some(message.channel()) == self.video {
@@ -263,7 +259,7 @@ mod tests {
         let mut clock = LoopClock::default();
         assert_eq!(clock.at(begin), None);
         for tick in 0..3000_u32 {
-            // The disk held the thread up for half a second; the loop began 2 s before its first tick is known here.
+            // The disk delayed the thread by half a second; the loop began 2 s before its first tick was seen here.
             let late = if (1000..1500).contains(&tick) { 1500 - tick } else { tick % 3 };
             clock.note(f64::from(tick) * 1e-3, begin + Duration::from_millis(u64::from(2000 + tick + late)));
         }

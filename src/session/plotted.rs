@@ -1,4 +1,4 @@
-//! What is plotted of an arm in a session file, tick by tick: for tables, and for the identification.
+//! Reads the plotted signals of an arm from a session file, tick by tick: for tables, and for the identification.
 
 use std::{
     ops::Range,
@@ -18,47 +18,46 @@ use crate::{
     topics::{FRAMES_TOPIC, STATES, columns::Columns, endoscope_of},
 };
 
-/// Why the plots of a session cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum PlottedError {
     #[error(transparent)]
     File(#[from] ReadError),
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    #[error("session {path} has no forces of an arm: it was not recorded by this program")]
+    #[error("session {path} has no forces of an arm: it was not recorded by this program; choose another session")]
     NoArms { path: PathBuf },
     #[error("session {path} has two arms: choose one with --arm right or --arm left")]
     TwoArms { path: PathBuf },
-    #[error("session {path} has no {} arm: leave --arm away", .arm.word())]
+    #[error("session {path} has no {} arm: omit --arm", .arm.word())]
     NoArm { path: PathBuf, arm: Side },
-    #[error("session {path} at {t_s} s: the plots of the {} arm are not those of this program", .arm.word())]
+    #[error("session {path} at {t_s} s: the plots of the {} arm were not written by this program; choose another session", .arm.word())]
     Foreign { path: PathBuf, arm: Side, t_s: f64 },
-    #[error("session {path} at {t_s} s: {what} is not a finite number; choose a stretch without it: nima export")]
+    #[error("session {path} at {t_s} s: {what} is not a finite number; export an excerpt without it: nima export")]
     NotFinite { path: PathBuf, t_s: f64, what: &'static str },
-    #[error("session {path}: time does not rise at {t_s} s; choose a stretch without it: nima export")]
+    #[error("session {path}: time does not rise at {t_s} s; export an excerpt without it: nima export")]
     Clock { path: PathBuf, t_s: f64 },
 }
 
-/// What is plotted of one arm in one tick.
+/// The plotted signals of one arm in one tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlottedTick {
     /// Time of its messages, ns since 1970 (UTC).
     pub time_ns: u64,
-    /// Since the session began, s.
+    /// s since the session's begin.
     pub t_s: f64,
     pub tip_m: Vector3<f64>,
     pub leader_m: Vector3<f64>,
-    /// No numbers while it was not known.
+    /// NaN while unknown.
     pub measured_n: Vector3<f64>,
-    /// The same.
+    /// NaN while unknown.
     pub delayed_n: Vector3<f64>,
     pub asked_n: Vector3<f64>,
     pub rendered_n: Vector3<f64>,
-    /// Of faults only that there was one is plotted.
+    /// The plots do not contain the cause of a fault.
     pub state: LoopState,
 }
 
-/// When the session began, ns: for a stretch that was cut out, the session that it was cut from.
+/// Returns the session's begin, ns; for an excerpt, the begin of its session.
 ///
 /// # Errors
 /// [`ReadError`] if the tables of the file cannot be read.
@@ -68,16 +67,16 @@ pub fn beginning_ns(reader: &Reader) -> Result<u64, ReadError> {
     Ok(told.unwrap_or(reader.statistics().times_ns.0))
 }
 
-/// The arms that are plotted.
+/// Returns the arms that are plotted.
 pub fn arms(reader: &Reader) -> Vec<Side> {
     let is_plotted = |side: &Side| reader.channels().iter().any(|channel| channel.topic == topic(*side, "forces"));
     Side::ALL.into_iter().filter(is_plotted).collect()
 }
 
-/// The arm that is meant: the only one, or the one that was asked for.
+/// Returns the requested arm, or the only one if none was requested.
 ///
 /// # Errors
-/// [`PlottedError`] if there is none, not this one, or no choice among two.
+/// [`PlottedError`] if the session has no arm, not this arm, or two arms and none was requested.
 pub fn arm(reader: &Reader, path: &Path, asked: Option<Side>) -> Result<Side, PlottedError> {
     let path = path.to_owned();
     match (asked, &*arms(reader)) {
@@ -89,16 +88,17 @@ pub fn arm(reader: &Reader, path: &Path, asked: Option<Side>) -> Result<Side, Pl
     }
 }
 
-/// Where the endoscope's marker was in these times (ns), the newest last; nothing where no tracker saw it, or the file has no frames.
+/// Returns the poses of the endoscope's marker in these times (ns), the newest last; empty if no tracker saw it or the
+/// file has no frames.
 pub fn endoscope(reader: &Reader, times_ns: Range<u64>) -> Vec<Isometry3<f64>> {
     let messages = reader.messages(&[FRAMES_TOPIC], times_ns);
     messages.filter_map(|message| endoscope_of(message.ok()?.data())).collect()
 }
 
-/// Calls `each` with every tick of this arm between these times (ns). A tick that was not written to its end is left out.
+/// Calls `each` with every tick of this arm between these times (ns). An incomplete tick is left out.
 ///
 /// # Errors
-/// [`PlottedError`] for a file that cannot be read or that another program wrote, or what `each` returns.
+/// [`PlottedError`] for a file that cannot be read or was written by another program, or the error of `each`.
 pub fn each_tick<E: From<PlottedError>>(
     reader: &Reader,
     path: &Path,
@@ -137,10 +137,11 @@ pub fn each_tick<E: From<PlottedError>>(
     Ok(())
 }
 
-/// Motion and force at the tip of an arm, as the same from an exported table. Ticks in which the force was not known are left out.
+/// Returns motion and force at the tip of an arm, the same as from an exported table. Ticks with an unknown force are
+/// left out.
 ///
 /// # Errors
-/// [`PlottedError`] for a file that cannot be read, no such arm, a value that is not finite, or too few ticks.
+/// [`PlottedError`] for a file that cannot be read, a missing arm, a value that is not finite, or too few ticks.
 pub fn recording(path: &Path, asked: Option<Side>) -> Result<Recording, PlottedError> {
     let reader = Reader::open(path)?;
     let arm = arm(&reader, path, asked)?;
@@ -169,7 +170,7 @@ pub(crate) fn topic(side: Side, what: &str) -> String {
     format!("{}/{what}", side.word())
 }
 
-/// A tick of what its messages say, in the order in which they are written.
+/// Assembles a tick from its messages, in the order in which they are written.
 fn tick(
     (time_ns, t_s): (u64, f64),
     forces: Option<&[f64]>,
@@ -183,7 +184,7 @@ fn tick(
     Some(PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state })
 }
 
-/// A state from its number in the plots.
+/// Returns the state of its number in the plots.
 fn state(number: f64) -> Option<LoopState> {
     let index = (number >= 0.0 && number.fract() == 0.0).then_some(number as usize)?;
     STATES.get(index).copied()

@@ -1,7 +1,7 @@
-//! Records a session: a thread of its own writes what passes the tap of a loop into a session file.
+//! Records a session: a separate thread writes the entries of a loop's tap into a session file.
 //!
-//! The loop never waits for it. Whatever goes wrong, a full disk or a folder that is gone, is told at once, and what was written stays
-//! readable ([`Recorder::trouble`]). A disk that is too slow is told by [`Progress`].
+//! The loop never waits for it. A failure, such as a full disk or a deleted folder, is reported at once
+//! ([`Recorder::trouble`]), and everything written before stays readable. [`Progress`] shows if the disk is too slow.
 
 mod session_file;
 mod shared;
@@ -43,74 +43,58 @@ use crate::{
 
 /// Topic of the journal.
 pub const JOURNAL_TOPIC: &str = "nima/journal";
-/// How its messages are encoded.
+/// Encoding of its messages.
 pub const JOURNAL_ENCODING: &str = "nima-journal";
 
-/// How long the thread waits for the loop before it looks whether it is to end.
+/// How long the thread waits for the loop before it checks whether it must end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 
-/// What is told of a session beside what happened in it.
+/// Information about a session, recorded in addition to its events.
 #[derive(Clone, Debug)]
 pub struct About {
-    /// Name and version of the program.
     pub program: String,
-    /// When the loop's clock began, ns since 1970 (UTC).
+    /// Start of the loop's clock, ns since 1970 (UTC).
     pub started_ns: u64,
-    /// Tables of keys and values, by name.
     pub metadata: BTreeMap<String, BTreeMap<String, String>>,
-    /// Whole files.
     pub files: Vec<Attached>,
-    /// Sentences for the events of the log.
+    /// Texts for the events of the log.
     pub words: Words,
 }
 
-/// A file inside a session file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attached {
-    /// Its name.
     pub name: String,
-    /// Its media type.
     pub media_type: String,
-    /// Its content.
     pub data: Vec<u8>,
 }
 
-/// Why a recording could not begin, or ended.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Something of the loop cannot be written.
-    #[error("the session cannot be recorded")]
+    #[error("cannot record the session")]
     Journal(#[from] JournalError),
-    /// The operating system gives no thread.
-    #[error("cannot start the thread that records: {0}; end other programs, then try again")]
+    #[error("cannot start the recording thread: {0}; end other programs, then try again")]
     Thread(#[source] io::Error),
     /// The operating system does not write to the disk.
     #[error("cannot record session {path}: {source}; check the disk or record to another one")]
-    System {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    System { path: PathBuf, source: io::Error },
 }
 
-/// What a screen adds to the log of a session: it does not pass the loop.
+/// A log entry from a screen, which does not pass through the loop.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Of what kind.
+    /// Kind of the entry.
     pub kind: NoteKind,
-    /// How much it matters: information, or a warning.
+    /// Whether it is a warning; otherwise it is information.
     pub warns: bool,
-    /// What.
+    /// English text.
     pub words: String,
-    /// Whether a name that a person gave may be in the words.
+    /// Whether the text may contain a name that a person gave.
     pub names: bool,
 }
 
-/// What a note is about.
+/// Kind of a note.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoteKind {
     /// A moment that the operator marked.
@@ -119,14 +103,14 @@ pub enum NoteKind {
     Alarm,
 }
 
-/// What a recording asks beside the loop.
+/// An additional source of data for a recording.
 #[derive(Debug)]
 enum Source {
     Objects(Box<dyn ObjectSource>),
     Pictures(Box<dyn PictureSource>),
 }
 
-/// A recording that is going on. Dropping it ends it as [`Recorder::finish`] does.
+/// A running recording. Dropping it ends it like [`Recorder::finish`].
 #[derive(Debug)]
 pub struct Recorder {
     shared: Arc<Shared>,
@@ -136,7 +120,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Begins a session with what passes this tap; `origin` is what its loop is made of.
+    /// Begins a session with the entries of this tap; `origin` describes the construction of its loop.
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be created or its beginning cannot be written.
@@ -159,39 +143,39 @@ impl Recorder {
         Ok(Self { shared, notes, sources, thread: Some(thread) })
     }
 
-    /// Records the objects that this source tells of too. To be called before the loop starts, so that nothing is missing.
+    /// Also records the objects of this source. Call it before the loop starts, so that nothing is missing.
     pub fn watch(&self, source: Box<dyn ObjectSource>) {
-        // A recording that has ended by itself takes no more.
+        // A recording that has ended by itself accepts no more sources.
         self.sources.send(Source::Objects(source)).ok();
     }
 
-    /// Records the pictures that this source hands over too, from now on.
+    /// Also records the images of this source from now on.
     pub fn film(&self, source: Box<dyn PictureSource>) {
-        // A recording that has ended by itself takes no more.
+        // A recording that has ended by itself accepts no more sources.
         self.sources.send(Source::Pictures(source)).ok();
     }
 
     /// Adds a line to the log at this time of the loop (s), or at its last tick if that is earlier.
     pub fn note(&self, t_s: f64, note: Note) {
-        // A recording that has ended by itself takes no more.
+        // A recording that has ended by itself accepts no more notes.
         self.notes.send((t_s, note)).ok();
     }
 
-    /// Figures so far.
+    /// Returns the statistics so far.
     pub fn progress(&self) -> Progress {
         self.shared.progress()
     }
 
-    /// Why the recording has ended, if it has ended by itself.
+    /// Returns why the recording has ended by itself, if it has.
     pub fn trouble(&self) -> Option<&RecordError> {
         self.shared.trouble.get()
     }
 
-    /// Ends the recording, and the file. To be called when the loop has ended; what a loop that runs on does from now on is
-    /// not recorded.
+    /// Ends the recording and the file. Call it when the loop has ended; later ticks of a running loop are not
+    /// recorded.
     ///
     /// # Errors
-    /// Why the recording ended before.
+    /// The reason why the recording ended by itself before.
     pub fn finish(mut self) -> Result<Progress, RecordError> {
         self.end();
         let progress = self.progress();
@@ -201,7 +185,7 @@ impl Recorder {
         }
     }
 
-    /// Ends the recording, as [`Recorder::finish`] does; what there is to tell of it can still be asked.
+    /// Ends the recording like [`Recorder::finish`]; its status can still be queried.
     pub fn end(&mut self) {
         self.shared.ends.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
@@ -216,7 +200,7 @@ impl Drop for Recorder {
     }
 }
 
-/// Goes on emptying the tap of a loop whose recording has ended, so that its boxes go round.
+/// Keeps emptying the tap of a loop whose recording has ended, so that its buffers circulate.
 fn drain(tap: &TapEnd, shared: &Shared) {
     loop {
         match next(tap, shared) {
@@ -227,7 +211,7 @@ fn drain(tap: &TapEnd, shared: &Shared) {
     }
 }
 
-/// Tells what went wrong with the file.
+/// Reports a failure of the file.
 fn tell(out: &mut Outlet, shared: &Shared) {
     if let Some(why) = out.trouble() {
         error!(error = &why as &dyn std::error::Error, "the file has ended by itself");
@@ -243,7 +227,7 @@ fn next(tap: &TapEnd, shared: &Shared) -> Next {
     tap.next(LOOK_EVERY)
 }
 
-/// The file and who writes into it.
+/// The file and its writer.
 struct Session {
     scribe: Scribe,
     file: SessionFile,
@@ -276,7 +260,7 @@ impl Session {
     fn run(&mut self, tap: &TapEnd, shared: &Shared) -> Result<(), RecordError> {
         loop {
             let next = next(tap, shared);
-            // What was handed over before the loop has begun is here before its first tick.
+            // Sources added before the loop's start must be present at its first tick.
             while let Ok(source) = self.sources.try_recv() {
                 match source {
                     Source::Objects(source) => self.file.topics.watch(&mut self.file.out, source)?,
@@ -292,7 +276,7 @@ impl Session {
                         self.pictures(shared)?;
                     }
                 }
-                // The loop rests: nobody shall wait for what is known.
+                // The loop is idle, so write everything that is known without delay.
                 Next::Nothing => {
                     self.notes(f64::INFINITY)?;
                     self.file.out.flush()?;
@@ -313,7 +297,7 @@ impl Session {
         }
     }
 
-    /// Writes the pictures up to the last tick.
+    /// Writes the images up to the last tick.
     fn pictures(&mut self, shared: &Shared) -> Result<(), RecordError> {
         let clock = &self.clock;
         let started_ns = self.file.started_ns;
@@ -328,7 +312,8 @@ impl Session {
         Ok(())
     }
 
-    /// Writes the notes up to this time (s) of the loop, none behind its last tick: the end of the journal is the last message.
+    /// Writes the notes up to this time (s) of the loop, but none after its last tick: the last message must be the end
+    /// of the journal.
     fn notes(&mut self, until_s: f64) -> Result<(), RecordError> {
         while let Some((t_s, note)) = self.waiting.take().or_else(|| self.noted.try_recv().ok()) {
             if t_s > until_s {

@@ -1,4 +1,4 @@
-//! Turns what passes the tap of a loop into the messages of a journal.
+//! Converts the entries of a loop's tap into the messages of a journal.
 
 use std::collections::BTreeMap;
 
@@ -13,49 +13,47 @@ use crate::journal::{BlockWriter, Encoder, End, JournalError, Noted, Start};
 /// A message of the journal, and the loop time that it belongs to (s).
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// Loop time of its last tick, s: it never falls, so that the messages keep their order.
+    /// Loop time of its last tick, s. It never falls, so that the messages keep their order.
     pub t_s: f64,
-    /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
-/// What takes a journal, and what else is told of a session.
+/// Receives a journal and the other records of a session.
 pub trait Pages {
-    /// Why it takes no more.
+    /// Why it cannot accept more.
     type Error: From<JournalError>;
 
-    /// Takes a message of the journal.
+    /// Called for a message of the journal.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The destination's errors.
     fn write(&mut self, written: &Written) -> Result<(), Self::Error>;
 
-    /// Takes a tick, and the events in it.
+    /// Called for a tick and the events in it.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The destination's errors.
     fn tick(&mut self, _stepped: &Stepped, _events: &[Event]) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Takes calibrations that come into force now, with their number.
+    /// Called for calibrations that become active now, with their number.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The destination's errors.
     fn calibrations(&mut self, _number: u64, _calibrations: &Calibrations) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Takes what was done to the loop after the tick at `t_s` (s).
+    /// Called for an operation on the loop after the tick at `t_s` (s).
     ///
     /// # Errors
-    /// Why it does not.
+    /// The destination's errors.
     fn operation(&mut self, _operation: &Operation, _t_s: f64) -> Result<(), Self::Error> {
         Ok(())
     }
 }
 
-/// The messages of the journal alone, in memory.
 impl Pages for Vec<Vec<u8>> {
     type Error = JournalError;
 
@@ -65,13 +63,12 @@ impl Pages for Vec<Vec<u8>> {
     }
 }
 
-/// Writes a journal.
 #[derive(Debug)]
 pub struct Scribe {
     encoder: Encoder,
     block: BlockWriter,
     events: Vec<Event>,
-    /// Calibrations that were handed over and that no operation has named yet.
+    /// Calibrations that were passed in and that no operation has named yet.
     filed: BTreeMap<u64, Calibrations>,
     /// Number of the next entry, if none is dropped.
     next: u64,
@@ -81,10 +78,10 @@ pub struct Scribe {
 }
 
 impl Scribe {
-    /// Begins a journal; the first message is that of the start.
+    /// Begins a journal; the first message is the start.
     ///
     /// # Errors
-    /// [`JournalError::Part`] if what the loop was made of cannot be written so that it reads the same.
+    /// [`JournalError::Part`] if a part of the loop's origin cannot be written and read back unchanged.
     pub fn new(start: &Start) -> Result<(Self, Written), JournalError> {
         let mut encoder = Encoder::default();
         let bytes = encoder.start(start)?;
@@ -106,7 +103,7 @@ impl Scribe {
         self.ticks
     }
 
-    /// Entries that were dropped so far.
+    /// Entries dropped so far.
     pub const fn lost(&self) -> u64 {
         self.lost
     }
@@ -116,10 +113,10 @@ impl Scribe {
         self.t_s
     }
 
-    /// Takes one entry.
+    /// Handles one entry.
     ///
     /// # Errors
-    /// What `pages` return, or [`JournalError::Part`] for calibrations that cannot be written.
+    /// The errors of `pages`, or [`JournalError::Part`] for calibrations that cannot be written.
     pub fn take<P: Pages>(&mut self, entry: Entry, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
         self.missed_until(entry.number);
         self.next = entry.number + 1;
@@ -149,7 +146,7 @@ impl Scribe {
     /// Ends the journal.
     ///
     /// # Errors
-    /// What `pages` return.
+    /// The errors of `pages`.
     pub fn end<P: Pages>(mut self, tap: &TapEnd, pages: &mut P) -> Result<End, P::Error> {
         self.missed_until(tap.offered());
         if !self.block.is_empty() {
@@ -164,12 +161,12 @@ impl Scribe {
         Written { t_s: self.t_s, bytes: self.encoder.block(&mut self.block) }
     }
 
-    /// Notes a hole if entries before this number were dropped.
+    /// Notes a gap if entries before this number were dropped.
     fn missed_until(&mut self, number: u64) {
         let lost = number.saturating_sub(self.next);
         if lost > 0 {
             self.lost += lost;
-            // The events that are known may be of a tick that was dropped.
+            // The collected events may belong to a tick that was dropped.
             self.events.clear();
             self.block.note(Noted::Hole { lost });
         }
@@ -177,7 +174,7 @@ impl Scribe {
 
     fn calibrations<P: Pages>(&mut self, number: u64, tap: &TapEnd, pages: &mut P) -> Result<(), P::Error> {
         self.filed.extend(tap.calibrations());
-        // Those with a lower number were not taken by the loop.
+        // The loop did not accept those with a lower number.
         self.filed = self.filed.split_off(&number);
         let Some(calibrations) = self.filed.remove(&number) else { return Ok(()) };
         let bytes = self.encoder.calibrations(number, &calibrations)?;

@@ -1,7 +1,8 @@
-//! The folder of a user's sessions: a name for a new one, which of them are kept, and room for the next.
+//! The folder of a user's sessions: names for new sessions, marks of the kept ones, and room for the next.
 //!
-//! Every session is recorded without being asked. Those that nobody keeps make room for new ones, the oldest first; one that is kept is
-//! never deleted. It is kept by an empty file beside it (`NAME.mcap.kept`), so that it can be while it is being written.
+//! Every session is recorded automatically. Sessions that are not marked as kept make room for new ones, the oldest
+//! first; a kept session is never deleted. The mark is an empty file next to the session (`NAME.mcap.kept`), so that a
+//! session can be marked while it is being written.
 
 use std::{
     fs, io,
@@ -11,21 +12,21 @@ use std::{
 
 use nima_recording::session::is_being_written;
 
-/// Bytes that the sessions which nobody keeps may take: ten hours of two arms.
+/// Maximum bytes of the sessions that are not kept: ten hours of two arms.
 pub const MOST_BYTES: u64 = 20_000_000_000;
-/// Bytes of the disk that sessions which nobody keeps leave free for everything else.
+/// Bytes of the disk that sessions which are not kept leave free for everything else.
 pub const LEFT_BYTES: u64 = 2_000_000_000;
-/// A file that was written to so lately may be the session of another program that runs now.
+/// A file written to this recently may be the session of another program that is running now.
 const IN_USE: Duration = Duration::from_mins(1);
 const EXTENSION: &str = "mcap";
 const MARK: &str = "mcap.kept";
-/// Longest part of a rig's name in a file's name, bytes.
+/// Maximum length of a rig's name within a file's name, bytes.
 const NAME_MAX: usize = 40;
 
-/// A path in this folder for a new session that began then (UTC, ISO 8601), with the rig's name in it.
+/// Returns a free path in this folder for a session that began at this time (UTC, ISO 8601), with the rig's name in it.
 ///
 /// # Errors
-/// A thousand sessions that began in the same second.
+/// All thousand names for sessions that began in the same second are taken.
 pub fn free_name(folder: &Path, started: &str, rig: &str) -> io::Result<PathBuf> {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     let rig: String = rig.chars().map(plain).take(NAME_MAX).collect();
@@ -38,21 +39,18 @@ pub fn free_name(folder: &Path, started: &str, rig: &str) -> io::Result<PathBuf>
     free.next().ok_or_else(|| io::Error::other("a thousand sessions began in this second"))
 }
 
-/// The folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shelf {
     folder: PathBuf,
     most_bytes: u64,
 }
 
-/// A session in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shelved {
-    /// Its file.
     pub path: PathBuf,
-    /// Bytes that it takes on the disk.
+    /// Bytes on the disk.
     pub bytes: u64,
-    /// When it was written to last.
+    /// Time of the last write.
     pub written: SystemTime,
     /// Whether it is never deleted.
     pub kept: bool,
@@ -61,17 +59,18 @@ pub struct Shelved {
 }
 
 impl Shelf {
-    /// The sessions in this folder, which is created with the first one; those that nobody keeps take `most_bytes` at most.
+    /// The sessions in this folder, which is created with the first one; those that are not kept use at most
+    /// `most_bytes`.
     pub fn new(folder: impl Into<PathBuf>, most_bytes: u64) -> Self {
         Self { folder: folder.into(), most_bytes }
     }
 
-    /// Its folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Makes the folder and room in it, and gives the path of a new session: `started` (UTC, ISO 8601) and the rig's name.
+    /// Creates the folder, makes room in it, and returns the path for a session: `started` (UTC, ISO 8601) and the
+    /// rig's name.
     ///
     /// # Errors
     /// I/O errors of the folder.
@@ -81,10 +80,10 @@ impl Shelf {
         free_name(&self.folder, started, rig)
     }
 
-    /// The sessions, oldest first.
+    /// Returns the sessions, oldest first.
     ///
     /// # Errors
-    /// I/O errors of the folder; one that is not there has no sessions.
+    /// I/O errors of the folder; a missing folder has no sessions.
     pub fn sessions(&self) -> io::Result<Vec<Shelved>> {
         let entries = match fs::read_dir(&self.folder) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
@@ -94,12 +93,12 @@ impl Shelf {
         for entry in entries {
             let path = entry?.path();
             if path.extension().is_some_and(|extension| extension == EXTENSION) {
-                // What is deleted meanwhile is none.
+                // A file that is deleted meanwhile does not count.
                 let Ok(about) = fs::symlink_metadata(&path) else { continue };
                 if about.is_file() {
                     let kept = mark_of(&path).exists();
                     let written = about.modified()?;
-                    // Where that cannot be known, what was written to lately may be.
+                    // If this is unknown, assume it for a file with a recent write.
                     let lately = || written.elapsed().is_ok_and(|since| since < IN_USE);
                     let writing = is_being_written(&path)
                         .map_or_else(|_| lately(), |writes| writes || cfg!(not(any(unix, windows))) && lately());
@@ -111,9 +110,9 @@ impl Shelf {
         Ok(all)
     }
 
-    /// Deletes what nobody keeps, the oldest first, until the rest takes no more than it may and leaves [`LEFT_BYTES`] of the disk free;
-    /// never `running`, the session that is being recorded, and none that another program may be recording. Returns the bytes that can
-    /// still be had in this way.
+    /// Deletes sessions that are not kept, the oldest first, until the rest stays within its limit and leaves
+    /// [`LEFT_BYTES`] of the disk free. Never deletes `running`, the session that is being recorded, or a session that
+    /// another program may be recording. Returns the bytes that can still be freed in this way.
     ///
     /// # Errors
     /// I/O errors of the folder or of a deletion.
@@ -137,7 +136,7 @@ impl Shelf {
     }
 }
 
-/// Keeps a session from now on, or leaves it to be deleted.
+/// Marks a session as kept, or removes the mark.
 ///
 /// # Errors
 /// I/O errors.
@@ -156,7 +155,7 @@ fn mark_of(session: &Path) -> PathBuf {
     session.with_extension(MARK)
 }
 
-/// Bytes on the disk: a session that is being written has free room that takes none.
+/// Bytes on the disk. A session that is being written has free space that uses none.
 #[cfg(unix)]
 fn taken(about: &fs::Metadata) -> u64 {
     std::os::unix::fs::MetadataExt::blocks(about) * 512
@@ -167,7 +166,8 @@ fn taken(about: &fs::Metadata) -> u64 {
     about.len()
 }
 
-/// Bytes that an ordinary user may still write to the disk of this folder; `None` where the system does not say.
+/// Returns the bytes that an ordinary user may still write to the disk of this folder; `None` if the system does not
+/// report it.
 #[cfg(unix)]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder).ok()?;
@@ -183,7 +183,7 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     let mut name: Vec<u16> = folder.as_os_str().encode_wide().collect();
     name.push(0);
     let mut free = 0;
-    // SAFETY: the name ends with a zero, and what is written to lives through the call; what is not wanted may be null.
+    // SAFETY: the name is zero-terminated, and the output lives through the call; pointers to unused outputs may be null.
     let told = unsafe {
         windows_sys::Win32::Storage::FileSystem::GetDiskFreeSpaceExW(
             name.as_ptr(),
@@ -195,7 +195,7 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     (told != 0).then_some(free)
 }
 
-/// As on Unix; not known here.
+/// Unknown on this system.
 #[cfg(not(any(unix, windows)))]
 pub const fn free_bytes(_: &Path) -> Option<u64> {
     None

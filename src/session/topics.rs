@@ -1,4 +1,4 @@
-//! What is plotted of a session: forces, poses and gates of each arm, and what happened.
+//! The plotted topics of a session: forces, poses and gates of each arm, and the log.
 
 pub(crate) mod columns;
 mod identification;
@@ -44,19 +44,19 @@ use self::{
     timing::Times,
 };
 
-/// Sentences of the log.
+/// Texts of the log.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// For what the loop tells, with the names of the rig's devices in the order of its roster.
+    /// For an event of the loop, with the names of the rig's devices in the order of its roster.
     pub event: fn(&Event, &[DeviceName]) -> String,
-    /// For what is done to the loop, with the same names.
+    /// For an operation on the loop, with the same names.
     pub operation: fn(&Operation, &[DeviceName]) -> String,
-    /// For what happens to the objects of a scene.
+    /// For an event of the scene's objects.
     pub happening: fn(&nima_core::task::Event) -> String,
 }
 
 impl Words {
-    /// The text of a value of the log; `None` for one that has no text of its own.
+    /// Returns the text of a value of the log; `None` for a value that has no text.
     pub fn of(&self, logged: &Logged, devices: &[DeviceName]) -> Option<String> {
         match logged {
             Logged::Event(event) => Some((self.event)(event, devices)),
@@ -67,18 +67,16 @@ impl Words {
     }
 }
 
-/// Topic of the log.
 pub(crate) const LOG_TOPIC: &str = "log";
-/// Names of its lines: of the loop, ...
+/// Names of the log's lines: from the loop, ...
 pub(crate) const LINE: &str = "nima";
 /// ... a moment that the operator marked, ...
 pub(crate) const MARK_LINE: &str = "mark";
 /// ... an alarm of the screen, ...
 pub(crate) const ALARM_LINE: &str = "alarm";
-/// ... and what happened to the objects of a scene.
+/// ... and an event of the scene's objects.
 pub(crate) const HAPPENING_LINE: &str = "happening";
 
-/// The channels of what is plotted.
 #[derive(Debug)]
 pub(crate) struct Topics {
     sides: [Option<OfSide>; SIDES],
@@ -87,9 +85,9 @@ pub(crate) struct Topics {
     log: Channel,
     words: Words,
     devices: Vec<DeviceName>,
-    /// Of a scene that tells of its objects.
+    /// `None` if no source provides objects.
     objects: Option<OfObjects>,
-    /// Of an endoscope.
+    /// `None` without an endoscope.
     pictures: Option<OfPictures>,
 }
 
@@ -116,7 +114,7 @@ pub(crate) const FORCES: [&str; 12] = [
     "rendered.z_n",
 ];
 const POSES: [&str; 6] = ["tip.x_m", "tip.y_m", "tip.z_m", "leader.x_m", "leader.y_m", "leader.z_m"];
-/// Beside one for each gate: 1 where it acted.
+/// In addition to one column for each gate: 1 while it acted.
 pub(crate) const OF_GATES: [&str; 5] = ["gain_value", "stored_j", "withheld_n", "governed", "state"];
 
 /// Every topic of named numbers of this program: its name, the names of its numbers, and whether they are forces.
@@ -166,13 +164,13 @@ impl Topics {
         Ok(Self { sides: of, scene: Scene::new(out)?, times, log, words, devices, objects: None, pictures: None })
     }
 
-    /// From now on this source is asked what the objects of the scene do.
+    /// Records the objects of this source from now on.
     pub(crate) fn watch(&mut self, out: &mut Outlet, source: Box<dyn ObjectSource>) -> Result<(), WriteError> {
         self.objects = Some(OfObjects::new(out, source)?);
         Ok(())
     }
 
-    /// Writes what is told of objects up to this time of the loop, s; `time_ns` gives the time of a message.
+    /// Writes the objects up to this time of the loop, s; `time_ns` computes the time of a message.
     pub(crate) fn objects(
         &mut self,
         out: &mut Outlet,
@@ -189,13 +187,13 @@ impl Topics {
         Ok(())
     }
 
-    /// From now on this source is asked for the endoscope's pictures.
+    /// Records the endoscope images of this source from now on.
     pub(crate) fn film(&mut self, source: Box<dyn PictureSource>) {
         self.pictures = Some(OfPictures::new(source));
     }
 
-    /// Writes the pictures that arrived up to this time of the loop, s, and returns how many were written and how many found no room so far.
-    /// `t_s_of` gives the time of a picture, `time_ns` that of a message.
+    /// Writes the images that arrived up to this time of the loop, s, and returns how many were written and how many
+    /// were dropped so far. `t_s_of` computes the time of an image, `time_ns` the time of a message.
     pub(crate) fn pictures(
         &mut self,
         out: &mut Outlet,
@@ -235,7 +233,7 @@ impl Topics {
         Ok(())
     }
 
-    /// Writes what was done to the loop.
+    /// Writes an operation on the loop.
     pub(crate) fn operation(
         &mut self,
         out: &mut Outlet,
@@ -257,7 +255,7 @@ impl Topics {
         out.message(self.log, time_ns, &line(time_ns, level, LINE, words, Some(value)))
     }
 
-    /// Writes what a screen adds to the log.
+    /// Writes a log entry from a screen.
     pub(crate) fn note(&self, out: &mut Outlet, time_ns: u64, note: Note) -> Result<(), WriteError> {
         let Note { kind, warns, words, names } = note;
         let level = if warns { Level::Warning } else { Level::Info };
@@ -270,7 +268,7 @@ impl Topics {
     }
 }
 
-/// A line of the log, with the value that it is made from; `None` where a name may be in the text.
+/// Makes a line of the log, with the value that it is built from; `None` if the text may contain a name.
 pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String, value: Option<&Logged>) -> Vec<u8> {
     let log = Log {
         timestamp: Some(foxglove::timestamp(time_ns)),
@@ -300,7 +298,7 @@ impl OfSide {
     }
 }
 
-/// The states in the order of a session, one fault for all: a state is plotted as its place here.
+/// The states in the order used in a session, all faults as one: a state is plotted as its index here.
 pub const STATES: [LoopState; 7] = [
     State::Disconnected,
     State::Idle,

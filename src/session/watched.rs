@@ -1,7 +1,7 @@
-//! What a screen elsewhere is told of a loop: every event, a tick of each side every few milliseconds, and once a bundle the objects of the
-//! scene and how far its task has come.
+//! Messages about a loop for a remote screen: every event, a tick of each side every few milliseconds, and once per
+//! bundle the objects of the scene and the progress of its task.
 //!
-//! A bundle of moments can be read without those before it, so that a screen may come late, and miss some.
+//! Every bundle can be read alone, so that a screen may join late and miss some.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3, Vector4};
 use nima_machine::{
@@ -14,28 +14,27 @@ use crate::{
     objects::{Jaws, Mark, Objects, Standing, WireLoop},
 };
 
-/// Version of the bundles; another one is refused.
+/// Version of the bundles; other versions are refused.
 const VERSION: u8 = 4;
-/// Time between two ticks of a bundle, s: what a trace on a screen can show.
+/// Time between two ticks of a bundle, s: the resolution of a trace on a screen.
 const STEP_S: f64 = 0.005;
-/// Most moments of a bundle, and most events of a moment.
+/// Maximum number of moments of a bundle, and of events of a moment.
 const MOST: u64 = 1024;
-/// Most rings of a bundle, and most marks.
+/// Maximum number of rings of a bundle, and of marks.
 const RINGS_MOST: u64 = 64;
 const MARKS_MOST: u64 = 64;
 
-/// What happened up to a tick.
+/// Everything up to a tick.
 #[derive(Clone, Debug)]
 pub struct Moment {
-    /// What the loop told since the moment before, oldest first.
+    /// Events of the loop since the previous moment, oldest first.
     pub events: Vec<Event>,
-    /// What each side shows.
+    /// State of each side.
     pub ticks: [Option<Tick>; SIDES],
-    /// The objects of the scene then, in the last moment of a bundle; `None` where nothing new was told.
+    /// The objects of the scene in the last moment of a bundle; `None` if there is nothing new.
     pub objects: Option<Objects>,
 }
 
-/// One row of a bundle.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     ticks: [Option<Tick>; SIDES],
@@ -43,13 +42,10 @@ struct Row {
 
 record!(Row { ticks: [Option<Tick>; SIDES] });
 
-/// Why a bundle cannot be shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WatchError {
-    /// It comes from another version of the program.
-    #[error("the rig runs another version of this program; install the same version here and there")]
+    #[error("the rig runs another version of this program; install the same version on both computers")]
     Version,
-    /// It is damaged.
     #[error("a message of the rig is damaged: {0}")]
     Damaged(#[from] Wrong),
 }
@@ -59,15 +55,15 @@ pub enum WatchError {
 pub struct MomentWriter {
     columns: Columns,
     rows: u64,
-    /// Events with the number of the moment that they belong to.
+    /// Events with the number of their moment.
     events: Vec<(u64, Event)>,
     last_s: Option<f64>,
-    /// The newest objects that were told.
+    /// The newest objects.
     objects: Option<Objects>,
 }
 
 impl MomentWriter {
-    /// Adds a tick, in which these events were told.
+    /// Adds a tick with the events reported in it.
     pub fn tick(&mut self, t_s: f64, ticks: &[Option<Tick>; SIDES], events: &[Event]) {
         self.events.extend(events.iter().map(|event| (self.rows, *event)));
         let is_due = self.last_s.is_none_or(|last_s| t_s - last_s >= STEP_S - 1e-6 || t_s < last_s);
@@ -79,22 +75,20 @@ impl MomentWriter {
         }
     }
 
-    /// The objects of the scene are like this now.
+    /// Sets the current objects of the scene.
     pub fn objects(&mut self, objects: &Objects) {
         self.objects = Some(objects.clone());
     }
 
-    /// Moments so far.
     pub const fn len(&self) -> u64 {
         self.rows
     }
 
-    /// Whether there is none.
     pub const fn is_empty(&self) -> bool {
         self.rows == 0
     }
 
-    /// The bundle so far; it is empty afterwards. Events whose moment is still to come stay for the next one.
+    /// Returns the bundle and empties it. Events whose moment is still to come stay for the next bundle.
     pub fn take(&mut self) -> Vec<u8> {
         let mut bytes = vec![VERSION];
         let told = self.events.partition_point(|(moment, _)| *moment < self.rows);
@@ -121,10 +115,10 @@ impl MomentWriter {
     }
 }
 
-/// The moments of a bundle, oldest first.
+/// Parses the moments of a bundle, oldest first.
 ///
 /// # Errors
-/// [`WatchError`] if it comes from another version, or is damaged.
+/// [`WatchError`] if it comes from another version or is damaged.
 pub fn read(bundle: &[u8]) -> Result<Vec<Moment>, WatchError> {
     let (version, mut from) = bundle.split_first().ok_or(Wrong::Short)?;
     if *version != VERSION {
@@ -286,7 +280,7 @@ fn vector(of: &[f64]) -> Vector3<f64> {
     Vector3::from_column_slice(of)
 }
 
-/// So many numbers, if they are there.
+/// Reads this many numbers, or `None` if they are marked as absent.
 fn take_some<const N: usize>(from: &mut &[u8]) -> Result<Option<[f64; N]>, Wrong> {
     if take_number(from)? == 0 { Ok(None) } else { take_numbers(from).map(Some) }
 }
@@ -301,7 +295,7 @@ fn take_numbers<const N: usize>(from: &mut &[u8]) -> Result<[f64; N], Wrong> {
     Ok(numbers)
 }
 
-/// An event, and the number of its moment, which is below `rows`.
+/// Reads an event, and the number of its moment, which is below `rows`.
 fn take_event(from: &mut &[u8], rows: u64) -> Result<(usize, Event), Wrong> {
     let moment = take_number(from)?;
     let count = take_number(from)?;
@@ -334,7 +328,7 @@ mod tests {
 
     type Shown = [Option<Tick>; SIDES];
 
-    /// Two seconds of a loop that is engaged and then stopped, told in bundles of 50 ms; every tick and event of it.
+    /// Two seconds of a loop that is engaged and then stopped, in bundles of 50 ms; with every tick and event of it.
     fn told() -> (Vec<Vec<u8>>, Vec<Shown>, Vec<Event>) {
         let rig = RigConfig::load("simulated").unwrap();
         let mut control = Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap();
@@ -367,7 +361,7 @@ mod tests {
         (bundles, ticks, events)
     }
 
-    /// Two rings of which one is lost, one pair of jaws, two marks, and a loop on a wire.
+    /// Two rings, one of them lost, one pair of jaws, two marks, and a loop on a wire.
     fn objects(t_s: f64) -> Objects {
         let turn = UnitQuaternion::from_euler_angles(t_s, 0.2, -t_s);
         let ring = Isometry3::from_parts(Translation3::new(t_s, 0.5, -0.25), turn);

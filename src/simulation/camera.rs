@@ -1,4 +1,5 @@
-//! The camera of the endoscope: the usual one of a scene, and what a rig file says of one as the endoscope's picture needs it.
+//! The endoscope camera: the default camera of a scene, and conversion of a rig file's camera to the image's lens and
+//! pose.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector2, Vector3};
 use nima_core::frames::from_roll_pitch_yaw_deg;
@@ -7,17 +8,17 @@ use nima_machine::config::EndoscopeCamera;
 
 use crate::scene::Scene;
 
-/// Size of the usual picture, px, and its radial distortion: a barrel, as most endoscopes have.
+/// Size of the default image, px, and its radial distortion: barrel, as in most endoscopes.
 const SIZE_PX: [usize; 2] = [1280, 720];
 const K1: f64 = -0.3;
-/// Vertical opening angle without distortion, rad; distance from the middle of the field, m; angle above the horizon, rad: those of the
-/// console's drawn view.
+/// Vertical opening angle without distortion, rad; distance from the middle of the field, m; angle above the horizon,
+/// rad: the values of the console's drawn view.
 const FIELD_OF_VIEW: f64 = 0.92;
 const DISTANCE_M: f64 = 0.128;
 const PITCH: f64 = 0.72;
 const MIDDLE_M: Vector3<f64> = Vector3::new(0.0, 0.0, 0.006);
 
-/// The usual camera of a scene, as a rig file has it: between two instruments, or beside a single one.
+/// Returns the default camera of a scene in a rig file's form: between two instruments, or to the side of a single one.
 pub fn usual(scene: &Scene) -> EndoscopeCamera {
     let yaw: f64 = if scene.left.is_some() || scene.wire.is_some() { 0.0 } else { -0.55 };
     let back_m = Vector3::new(yaw.sin() * PITCH.cos(), -yaw.cos() * PITCH.cos(), PITCH.sin()) * DISTANCE_M;
@@ -38,7 +39,7 @@ pub fn usual(scene: &Scene) -> EndoscopeCamera {
     }
 }
 
-/// The lens that a rig file describes.
+/// Returns the lens that a rig file describes.
 pub fn lens_of(settings: &EndoscopeCamera) -> Lens {
     let EndoscopeCamera { size_px, focal_px, focal_y_px, centre_px, k1, k2, p1, p2, .. } = *settings;
     let middle_px = Vector2::from(size_px.map(|side| 0.5 * side as f64));
@@ -46,7 +47,7 @@ pub fn lens_of(settings: &EndoscopeCamera) -> Lens {
     Lens { size_px, focal_px, centre_px: centre_px.map_or(middle_px, Vector2::from), bend: Bend { k1, k2, p1, p2 } }
 }
 
-/// The camera that a rig file describes; at the workspace's origin where its place is not known.
+/// Returns the camera that a rig file describes; at the workspace's origin if its pose is unknown.
 pub fn camera_of(settings: &EndoscopeCamera) -> Camera {
     let rotation: UnitQuaternion<f64> = from_roll_pitch_yaw_deg(&settings.world_from_camera_deg.unwrap_or_default());
     let place_m = settings.position_m.unwrap_or_default();

@@ -1,7 +1,7 @@
-//! The task of hands that carry rings from peg to peg: over to the other side, and back.
+//! The task of hands that carry rings from peg to peg: to the other side, and back.
 //!
-//! With two hands each ring changes hands in the middle, as in FLS: one takes it from its peg, the other takes it over in mid-air and puts it
-//! on a peg of its own side. One hand alone carries it all the way.
+//! With two hands each ring changes hands in the middle, as in FLS: one hand takes it from its peg, the other takes it
+//! in mid-air and puts it on a peg of its own side. A single hand carries it all the way.
 
 use nalgebra::Vector3;
 use nima_machine::rig::{SIDES, Side};
@@ -11,21 +11,21 @@ use crate::{
     physics::{Setting, Start},
 };
 
-/// How far jaws open around a ring, rad, and how fast.
+/// Opening angle of jaws around a ring, rad, and opening speed.
 const OPEN_RAD: f64 = 0.6;
 const OPENS_S: f64 = 0.3;
-/// Speeds on the way from place to place, on the way to a ring or a peg, and of a hand that leaves, m/s.
+/// Speeds of the tip between positions, on the approach to a ring or a peg, and of a hand that moves away, m/s.
 const CARRIES_M_S: f64 = 0.10;
 const NEARS_M_S: f64 = 0.05;
 const LEAVES_M_S: f64 = 0.15;
-/// Height of an empty hand above a ring, and of a ring that is carried above the tops of the pegs, m.
+/// Height of an empty hand above a ring, and of a carried ring above the tops of the pegs, m.
 const ABOVE_RING_M: f64 = 0.03;
 const OVER_PEGS_M: f64 = 0.02;
-/// A ring is let go at this share of the height of its peg.
+/// A ring is released at this fraction of the height of its peg.
 const LET_GO: f64 = 0.64;
-/// Jaws reach so far below the middle of a ring, m.
+/// Jaws reach this far below the middle of a ring, m.
 const DEEPER_M: f64 = 0.001;
-/// Where rings change hands, m, and where a hand waits beside it.
+/// Where rings change hands, m, and where the other hand waits.
 const MIDDLE_M: Vector3<f64> = Vector3::new(0.0, 0.0, 0.060);
 const ASIDE_M: Vector3<f64> = Vector3::new(0.045, 0.0, 0.090);
 /// Rest after the task, s.
@@ -33,7 +33,7 @@ const DONE_S: f64 = 1e6;
 /// Rest between two parts of the task, s.
 const REST_S: f64 = 0.3;
 
-/// The parts of both hands' tasks, which are as long as each other.
+/// The parts of both hands' tasks, which have equal durations.
 struct Task {
     /// From the middle of a ring to the middle of its tube, and the height of a ring that lies on the board, m.
     rim_m: f64,
@@ -44,7 +44,8 @@ struct Task {
     grip_rad: [f64; SIDES],
 }
 
-/// The task of each hand; of the right one alone if there is no other. Empty without a ring on a peg that has one opposite.
+/// Returns the task of each hand; only the right one's if there is no other. Empty without a ring on a peg that has an
+/// opposite peg.
 pub(super) fn ways(setting: &Setting, two_hands: bool) -> [Vec<Part>; SIDES] {
     let waits = [Side::Right, Side::Left].map(|side| outwards(side, ASIDE_M));
     let rim_m = setting.ring.major_radius_m;
@@ -53,7 +54,7 @@ pub(super) fn ways(setting: &Setting, two_hands: bool) -> [Vec<Part>; SIDES] {
     let mut task = Task { rim_m, lies_m, peg_m, parts: [vec![], vec![]], at_m: waits, grip_rad: [0.0; SIDES] };
     let pegs = &setting.pegs.at_m;
     let foot_m = |peg: usize| pegs.get(peg).map(|[x, y]| Vector3::new(*x, *y, setting.board.z_m));
-    // The pegs of the right side stand in the order of those of the left one.
+    // The pegs of the right side are in the same order as those of the left side.
     let opposite = |peg: usize| if peg < pegs.len() / 2 { peg + pegs.len() / 2 } else { peg - pegs.len() / 2 };
     let pairs: Vec<_> = setting
         .rings
@@ -72,14 +73,14 @@ pub(super) fn ways(setting: &Setting, two_hands: bool) -> [Vec<Part>; SIDES] {
             task.carry(Side::Right, from_m, to_m);
         }
     }
-    // A ring may lie some millimetres from where it began, and these hands see nothing: they carry it over and back once.
+    // A ring may lie some millimetres from where it began, and these hands are blind: they carry it over and back once.
     if !pairs.is_empty() {
         task.act(Side::Right, task.at_m[Side::Right.index()], 0.0, DONE_S);
     }
     task.parts
 }
 
-/// A place on the right side, mirrored for the left one.
+/// Mirrors a position on the right side for the left one.
 fn outwards(side: Side, at_m: Vector3<f64>) -> Vector3<f64> {
     match side {
         Side::Right => at_m,
@@ -88,7 +89,7 @@ fn outwards(side: Side, at_m: Vector3<f64>) -> Vector3<f64> {
 }
 
 impl Task {
-    /// One hand moves, the other one waits.
+    /// Moves one hand while the other one waits.
     fn act(&mut self, side: Side, to_m: Vector3<f64>, to_rad: f64, seconds: f64) {
         for hand in Side::ALL {
             let i = hand.index();
@@ -112,7 +113,7 @@ impl Task {
         self.act(side, at_m, to_rad, REST_S);
     }
 
-    /// Where the tip is at a ring whose middle is here: at its outer rim, seen from the hand's own side.
+    /// Returns the position of the tip at a ring with this middle: at its outer rim, on the hand's own side.
     fn rim_m(&self, side: Side, middle_m: Vector3<f64>) -> Vector3<f64> {
         middle_m + outwards(side, Vector3::new(self.rim_m, 0.0, -DEEPER_M))
     }

@@ -1,11 +1,12 @@
-//! Desk devices that lead a simulated rig: a six-axis cap such as a `SpaceMouse`, or a haptic handle (`held`),
-//! leads the right hand; pedals are clutch and presence switch.
+//! Desk devices for a simulated rig: a six-axis cap such as a `SpaceMouse`, or a haptic handle (`held`), leads the
+//! right hand; pedals are clutch and presence switch.
 //!
 //! The cap commands a velocity: its deflection (-1 to 1) times [`DeskSettings::speed_m_s`], in the workspace (x right,
-//! y away, z up). Until it is touched, the simulated hand performs its task; from then on the hand is led by the cap,
-//! until button 0 ends this. Button 1 marks the place under the tip in a scene where lumps are looked for, and opens and closes the jaws in one
-//! with rings; there the left hand waits while the right one is led, so that it takes no ring away. A cap that is lost or silent counts as
-//! released, and the hand stays where it is. Leading from the screen takes precedence.
+//! y away, z up). The simulated hand performs its task until the cap is touched; from then on the cap leads the hand,
+//! until button 0 ends this. Button 1 marks the position under the tip in a palpation scene, and opens and closes the
+//! jaws in a scene with rings; there the left hand waits while the right one is led, so that it takes no ring away. A
+//! cap that is lost or silent counts as released, and the hand stays where it is. Leading from the screen takes
+//! precedence.
 
 use nalgebra::Vector3;
 use nima_devices::{
@@ -21,28 +22,29 @@ use super::{Worlds, held::Held as HeldHandle};
 
 /// Smaller deflections count as zero.
 const TOUCH: f64 = 0.05;
-/// How far the button opens the jaws, rad; jaws that are open less than this share of it hold a ring, or nothing.
+/// Opening of the jaws by the button, rad. Jaws that are open by less than this fraction of it hold a ring, or nothing.
 const OPEN_RAD: f64 = 0.6;
 const OPEN_SHARE: f64 = 0.8;
-/// Longest time step in which a deflection is integrated, s.
+/// Maximum time step over which a deflection is integrated, s.
 const STEP_MAX_S: f64 = 0.01;
 
-/// A simulated rig with a cap and pedals.
 pub struct Desk {
     worlds: Worlds,
     handle: Option<HeldHandle>,
     cap: Option<(Slot<CapDriver>, Held<CapReading>)>,
     pedal: Option<(Slot<PedalDriver>, Held<PedalReading>, PedalRoles)>,
     speed_m_s: f64,
-    /// What was done with its buttons, how far the jaws are held open with them, rad, and whether the second one is down.
+    /// Actions done with the buttons, the opening at which they hold the jaws, rad, and whether the second button is
+    /// down.
     acts: Acts,
     grip_rad: Option<f64>,
     is_down: bool,
-    /// Position to which the cap leads the hand, m; `None` until it is touched. Where the left hand waits meanwhile.
+    /// Position to which the cap leads the hand, m (`None` until it is touched), and where the left hand waits
+    /// meanwhile.
     at_m: Option<Vector3<f64>>,
     left_m: Option<Vector3<f64>>,
     hands_m: [Vector3<f64>; SIDES],
-    /// Opening of the right gripper, rad, where there are jaws.
+    /// Opening of the right gripper, rad; `None` without jaws.
     gripper_rad: Option<f64>,
     last_s: Option<f64>,
     watch: Watch,
@@ -50,7 +52,7 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// Starts opening the devices in the settings.
+    /// Starts to open the devices in the settings.
     ///
     /// # Errors
     /// [`RigError`] if a setting is invalid or a thread cannot be created.
@@ -100,12 +102,13 @@ impl Desk {
         Ok((desk, roster))
     }
 
-    /// Where the cap leads the hand, m; `None` until it is touched, and while its first button is down.
+    /// Returns the position to which the cap leads the hand, m; `None` until it is touched, and while its first button
+    /// is down.
     pub const fn led_to_m(&self) -> Option<Vector3<f64>> {
         self.at_m
     }
 
-    /// Present position to which the cap leads the hand.
+    /// Updates and returns the position to which the cap leads the hand.
     fn lead(&mut self, now_s: f64) -> Option<Vector3<f64>> {
         let dt_s = self.last_s.replace(now_s).map_or(0.0, |last_s| (now_s - last_s).clamp(0.0, STEP_MAX_S));
         let (slot, held) = self.cap.as_mut()?;
@@ -127,16 +130,16 @@ impl Desk {
         self.at_m
     }
 
-    /// The second button: where there are jaws it opens or closes them, elsewhere it marks.
+    /// Handles the second button: it opens or closes jaws if there are any, and otherwise marks.
     fn press(&mut self) {
         let Some(gripper_rad) = self.gripper_rad else { return self.acts.note(Act::Mark) };
         let is_open = self.grip_rad.unwrap_or(gripper_rad) > OPEN_SHARE * OPEN_RAD;
         self.grip_rad = Some(if is_open { 0.0 } else { OPEN_RAD });
-        // With jaws that are led the hand goes on with no task of its own.
+        // While its jaws are led, the hand does not continue its own task.
         self.at_m.get_or_insert(self.hands_m[Side::Right.index()]);
     }
 
-    /// What the worlds get: the loop's outputs, with what is led here.
+    /// Returns the loop's outputs with the led parts replaced, for the worlds.
     fn led(&mut self, led_m: Option<Vector3<f64>>) -> [Outputs; SIDES] {
         let left_m = self.left_m.unwrap_or(self.hands_m[Side::Left.index()]);
         self.left_m = led_m.and(self.gripper_rad).map(|_| left_m);
@@ -171,7 +174,6 @@ impl Rig for Desk {
         let outputs = self.led(led_m);
         let mut watch = std::mem::take(&mut self.watch);
         for (device, health) in self.standings().enumerate() {
-            // The handle is the first of them, and on the path of the right force.
             let carries_force = self.handle.is_some() && device == 0;
             watch.look(now_s, device, health.standing, [carries_force, false]);
         }

@@ -1,43 +1,46 @@
-//! What a person makes of the force in the hand: gives way to more than was intended, and goes on more slowly.
+//! A person's response to the force in the hand: yields to a force above the intended one, and moves more slowly.
 //!
-//! With force feedback people press less: without it the mean force of a blunt dissection was at least 1.5 times, the peak at least twice as large
-//! (Wagner, Stylopoulos, Jackson and Howe 2007, Presence 16:252-262). The model is the plainest that does so: the person means to use a force, feels
-//! a reaction time late and with an error how much more it is, and moves the hand back and slows down in proportion to that. Whoever feels
-//! nothing goes where the eyes lead, at the same pace all the time. Takes the force of the handle (N, workspace frame); gives a pace and an
-//! offset (m). It is no model of a surgeon: two of its constants are from the literature, the rest is ours.
+//! With force feedback people press less: without it the mean force of a blunt dissection was at least 1.5 times, the
+//! peak at least twice as large (Wagner, Stylopoulos, Jackson and Howe 2007, Presence 16:252-262). This is the simplest
+//! model with this effect: the person intends a force, perceives the excess with a reaction time and an error, and
+//! moves the hand back and slows down in proportion to it. A person without force feedback follows the visual target at
+//! constant pace. Takes the force of the handle (N, workspace frame); returns a pace and an offset (m). Not a model of
+//! a surgeon: two of its constants are from the literature, the others are our choice.
 
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
 
-/// From a force on the hand to the movement that answers it, s: 119 ms (Chernikoff and Taylor 1952, J. Exp. Psychol. 43:1-8).
+/// From a force on the hand to the responding movement, s: 119 ms (Chernikoff and Taylor 1952, J. Exp. Psychol.
+/// 43:1-8).
 const REACTION_S: f64 = 0.12;
-/// A force is judged with an error of this share: the least difference that is felt is 7 % (Pang, Tan and Durlach 1991, Percept. Psychophys.
-/// 49:531-540).
+/// Relative error in judging a force: the just noticeable difference is 7 % (Pang, Tan and Durlach 1991, Percept.
+/// Psychophys. 49:531-540).
 const JUDGED: f64 = 0.07;
-/// How fast the hand gives way to each newton above what was intended, m/s.
+/// Speed at which the hand yields, per newton above the intended force, m/s.
 const YIELDS_M_S: f64 = 0.006;
-/// It gives way by no more than this, m.
+/// Maximum distance by which it yields, m.
 const YIELDS_MOST_M: f64 = 0.02;
-/// Below this share of what was intended the contact is over, and the hand goes back to its aim with this time constant, s.
+/// Below this fraction of the intended force the contact is over, and the hand returns to its target with this time
+/// constant, s.
 const OVER: f64 = 0.5;
 const RETURNS_S: f64 = 0.3;
 /// At twice the intended force the person is slowest, by this factor.
 const SLOWEST: f64 = 0.3;
-/// Steps in which the reaction time is counted, s, and their number.
+/// Step in which the reaction time is counted, s, and number of steps.
 const STEP_S: f64 = 1e-3;
 const STEPS: usize = (REACTION_S / STEP_S) as usize;
-/// Keeps the errors of judgement apart from the other lots of the seed.
+/// Makes the errors of judgement independent of the other random sequences of the seed.
 const LOT: u64 = 0xfee1;
 
-/// A person who feels.
+/// A person with force perception.
 #[derive(Clone, Debug)]
 pub(super) struct Feeling {
     intended_n: f64,
-    /// What was felt, in steps, and the place of the oldest.
+    /// Ring buffer of the felt forces, one per step, and the index of the oldest.
     felt_n: Vec<Vector3<f64>>,
     oldest: usize,
     since_s: f64,
-    /// What the force is multiplied by where it is judged, in this movement.
+    /// Factor of the person's judgement of the force in this movement.
     judged: f64,
     lot: Noise,
     offset_m: Vector3<f64>,
@@ -45,7 +48,7 @@ pub(super) struct Feeling {
 }
 
 impl Feeling {
-    /// A person who means to use this force, N.
+    /// A person who intends this force, N.
     pub(super) fn new(intended_n: f64, seed: u64) -> Self {
         Self {
             intended_n,
@@ -59,18 +62,18 @@ impl Feeling {
         }
     }
 
-    /// A new movement begins, with a judgement of its own.
+    /// Starts a new movement with its own error of judgement.
     pub(super) fn judge_anew(&mut self) {
         self.judged = (1.0 + JUDGED * self.lot.gaussian()).max(0.5);
     }
 
-    /// The hand is led, or waits: it takes up its task without an offset.
+    /// Called while the hand is led or waits, so that it resumes its task without an offset.
     pub(super) fn rest(&mut self) {
         self.offset_m = Vector3::zeros();
         self.pace = 1.0;
     }
 
-    /// Feels this force of the handle (N) for `dt_s`, at most a step; gives the pace of the task.
+    /// Processes this force of the handle (N) for `dt_s`, at most a step; returns the pace of the task.
     pub(super) fn feel(&mut self, force_n: &Vector3<f64>, dt_s: f64) -> f64 {
         self.since_s += dt_s;
         if self.since_s > 0.5 * STEP_S {
@@ -91,12 +94,12 @@ impl Feeling {
         self.pace
     }
 
-    /// How far the hand has given way, m.
+    /// How far the hand has yielded, m.
     pub(super) const fn offset_m(&self) -> Vector3<f64> {
         self.offset_m
     }
 
-    /// How fast the task goes on, 1 where nothing slows it.
+    /// Pace of the task; 1 if nothing slows it.
     pub(super) const fn pace(&self) -> f64 {
         self.pace
     }

@@ -1,4 +1,4 @@
-//! The simulated hand of the surgeon: minimum-jerk movements, tremor, and an elastic grip.
+//! The surgeon's simulated hand: minimum-jerk movements, tremor, and an elastic grip.
 
 use std::f64::consts::TAU;
 
@@ -12,17 +12,16 @@ use crate::{
     searching::Searching,
 };
 
-/// Height above the targets at which the hand moves from one to the next, m.
+/// Height above the targets at which the hand moves between them, m.
 const CARRY_HEIGHT_M: f64 = 0.015;
-/// Frequencies of physiological tremor, Hz.
 const TREMOR_HZ: [f64; 3] = [8.3, 9.7, 11.6];
 
-/// Fastest that fingers open or close a gripper, rad/s.
+/// Maximum speed at which fingers open or close a gripper, rad/s.
 const GRIP_RAD_S: f64 = 4.0;
 /// Maximum speed of a handle that is led from the screen, m/s.
 const GUIDE_M_S: f64 = 0.15;
-/// A handle that nobody holds: its mass, kg, what its bearings brake, N s/m (an omega.7's, as the gates assume them), and where its
-/// mechanism ends on each axis, m.
+/// A released handle: its mass, kg, the damping of its bearings, N s/m (an omega.7's, as assumed by the gates), and the
+/// limits of its mechanism on each axis, m.
 const HANDLE_KG: f64 = 0.25;
 const HANDLE_N_S_M: f64 = 0.5;
 const HANDLE_STOP_M: f64 = 0.08;
@@ -41,9 +40,8 @@ pub(super) struct Move {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     pub(super) way: Move,
-    /// How far the gripper is open at its beginning and at its end, rad.
+    /// Opening of the gripper at its beginning and at its end, rad.
     pub(super) grip_rad: [f64; 2],
-    /// What the hand does at its end.
     pub(super) then: Option<Act>,
 }
 
@@ -77,11 +75,11 @@ pub struct Hand {
     task: Vec<Part>,
     current: usize,
     in_move_s: f64,
-    /// What it looks for, where that decides on its task.
+    /// The search that determines its task, in a palpation.
     search: Option<Box<Searching>>,
-    /// What it makes of the force, where that matters.
+    /// Its response to the force; `None` if it has no force perception.
     feeling: Option<Box<Feeling>>,
-    /// How fast its task goes on, and how fast that of both hands of a person does, where they have one task.
+    /// Pace of its own task, and the common pace of both hands if they share a task.
     pace: f64,
     shared_pace: Option<f64>,
     acts: Acts,
@@ -90,14 +88,14 @@ pub struct Hand {
     position_m: Vector3<f64>,
     velocity_m_s: Vector3<f64>,
     guide_m: Option<Vector3<f64>>,
-    /// Opening of the gripper, rad, and the one at which the screen holds it.
+    /// Opening of the gripper, rad, and the opening commanded from the screen.
     grip_rad: f64,
     held_open_rad: Option<f64>,
-    /// Position at which it waits, while the task is paused.
+    /// Position at which it waits while the task is paused.
     waits_m: Option<Vector3<f64>>,
     /// Intended position while the hand is led, and on its way back to the task.
     led_m: Option<Vector3<f64>>,
-    /// It has let go of the handle, which now moves alone.
+    /// Whether it has released the handle, which then moves freely.
     open: bool,
 }
 
@@ -138,17 +136,18 @@ impl Hand {
         }
     }
 
-    /// The same with a task that depends on what is felt.
+    /// The hand of `scene` with a task that depends on what is felt.
     pub(super) fn searching(scene: &Scene, task: Vec<Part>, search: Box<Searching>) -> Self {
         Self { search: Some(search), ..Self::with_task(scene, task) }
     }
 
-    /// What the hand has done besides moving.
+    /// Actions done so far, other than movements.
     pub(super) const fn acts(&self) -> Acts {
         self.acts
     }
 
-    /// Opens the hand (true), or closes it around the handle where that is now (false); then it goes on with its task.
+    /// Opens the hand (true), or closes it around the handle at the handle's current position (false) and resumes the
+    /// task.
     pub fn let_go(&mut self, lets_go: bool) {
         if self.open && !lets_go {
             self.led_m = Some(self.position_m);
@@ -166,12 +165,11 @@ impl Hand {
         }
     }
 
-    /// Holds the gripper this far open, rad, instead of as the task has it; `None`: as the task has it, or as it is while the hand is led.
+    /// Holds the gripper at this opening, rad; `None` follows the task, or keeps the opening while the hand is led.
     pub(super) fn hold_open(&mut self, grip_rad: Option<f64>) {
         self.held_open_rad = grip_rad.filter(|rad| rad.is_finite());
     }
 
-    /// Opening of the gripper, rad.
     pub(super) const fn grip_rad(&self) -> f64 {
         self.grip_rad
     }
@@ -185,12 +183,12 @@ impl Hand {
         }
     }
 
-    /// The position to which it is led, or at which it waits; leading takes precedence.
+    /// Returns the position to which the hand is led, or at which it waits; leading takes precedence.
     fn aside_m(&self) -> Option<Vector3<f64>> {
         self.guide_m.or(self.waits_m)
     }
 
-    /// Intended position, m, and velocity, m/s: of the task, or while led.
+    /// Returns the intended position, m, and velocity, m/s, of the task or of the leading.
     fn intended(&mut self, dt_s: f64) -> (Vector3<f64>, Vector3<f64>) {
         let (task_m, task_m_s) = self.task[self.current].way.at(self.in_move_s);
         let aside_m = self.aside_m();
@@ -244,17 +242,17 @@ impl Hand {
         self.position_m += self.velocity_m_s * dt_s;
     }
 
-    /// How fast what it feels lets its task go on.
+    /// Returns the pace that its force perception permits.
     pub(super) fn felt_pace(&self) -> f64 {
         self.feeling.as_ref().map_or(1.0, |feeling| feeling.pace())
     }
 
-    /// From now on its task goes on at this pace, which it shares with the other hand: in a task of both, neither may run ahead.
+    /// Sets the pace shared with the other hand: in a task of both hands, neither may run ahead.
     pub(super) const fn share_pace(&mut self, pace: f64) {
         self.shared_pace = Some(pace);
     }
 
-    /// What the person makes of this force (N); the pace of the task.
+    /// Processes this force (N); returns the pace of the task.
     fn feel(&mut self, dt_s: f64, force_n: &Vector3<f64>) -> f64 {
         let is_led = self.led_m.is_some();
         let Some(feeling) = &mut self.feeling else { return 1.0 };
@@ -266,7 +264,7 @@ impl Hand {
         1.0
     }
 
-    /// To the next part of the task.
+    /// Advances to the next part of the task.
     fn go_on(&mut self) {
         if let Some(act) = self.task[self.current].then {
             self.acts.note(act);
@@ -281,7 +279,7 @@ impl Hand {
         }
     }
 
-    /// The handle alone, up to the end of its mechanism.
+    /// Moves the free handle, up to the end of its mechanism.
     fn fly(&mut self, dt_s: f64, force_n: &Vector3<f64>) {
         self.velocity_m_s += (force_n - self.velocity_m_s * HANDLE_N_S_M) * (dt_s / HANDLE_KG);
         let free_m = self.position_m + self.velocity_m_s * dt_s;
@@ -305,7 +303,7 @@ impl Hand {
     }
 }
 
-/// The repeated task: above each target move down, press, drag a little, hold, lift, and move on to the next.
+/// Returns the repeated task: above each target move down, press, drag a little, hold, lift, and move on to the next.
 fn task(hand: &HandConfig, targets_m: &[Vector3<f64>]) -> Vec<Part> {
     let lift = Vector3::new(0.0, 0.0, CARRY_HEIGHT_M);
     let press = Vector3::new(0.0, 0.0, -hand.press_depth_m);
@@ -387,7 +385,7 @@ mod tests {
         let feeling = after(Some(1.0), 3.0);
         assert_eq!((blind.0, feeling.0), (1, 0), "slower than the task");
         assert!(feeling.1 > blind.1 + 0.005, "higher: {feeling:?} and {blind:?}");
-        assert_eq!(after(Some(1.0), 0.5), after(None, 0.5), "less than intended is no matter");
+        assert_eq!(after(Some(1.0), 0.5), after(None, 0.5), "a force below the intended one has no effect");
     }
 
     #[test]

@@ -1,8 +1,9 @@
-//! A haptic handle that leads the right hand of a simulated rig, in place of the simulated hand: a person feels the simulated tissue.
+//! A haptic handle that leads the right hand of a simulated rig instead of the simulated hand, so that a person feels
+//! the simulated tissue.
 //!
-//! The loop gets position, orientation and gripper of the handle in the handle's own frame, as from a rig of devices, and its force goes
-//! there in the same tick. Without a reading that is not too old the side has no sample: the loop then goes to a fault. Drives are on only
-//! once the handle has told that its force is.
+//! The loop gets position, orientation and gripper of the handle in the handle's own frame, as on a rig with devices,
+//! and its force goes to the handle in the same tick. Without a recent reading the side has no sample, and the loop
+//! enters a fault. Drives are on only after the handle has reported that its force is on.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -12,7 +13,7 @@ use nima_core::{
 use nima_devices::{HandleReading, Health, Leader, Lever, Slot, Stamped, Standing};
 use nima_machine::rig::{GUIDE_MAX_M, Inputs, LeaderSettings, Outputs, RigError, RosterEntry};
 
-/// A reading older than this counts as missing, s: as on a rig of devices.
+/// A reading older than this counts as missing, s: the same as on a rig with devices.
 const OLDEST_S: f64 = 0.020;
 
 /// The handle on the desk.
@@ -26,7 +27,7 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// Begins to open it.
+    /// Starts to open the device.
     pub(super) fn start(settings: &LeaderSettings) -> Result<(Self, RosterEntry), RigError> {
         let lever = Lever::default();
         let (slot, entry) = settings.start(&lever)?;
@@ -45,7 +46,7 @@ impl Held {
         self.slot.health().standing == Standing::Connected
     }
 
-    /// Reads what it has sent; where it is now, m, as far as the simulated hand can follow it.
+    /// Reads new data; returns the handle's position, m, limited to what the simulated hand can follow.
     pub(super) fn poll(&mut self, now_s: f64) -> Option<Vector3<f64>> {
         if let Some(reading) = self.slot.poll(now_s) {
             self.newest = Some(reading);
@@ -57,7 +58,7 @@ impl Held {
         fresh.map(|reading| reading.value.position_m.map(|axis| axis.clamp(-GUIDE_MAX_M, GUIDE_MAX_M)))
     }
 
-    /// The measurements of its side with this hand in place of the simulated one.
+    /// Returns the measurements of its side with this hand instead of the simulated one.
     pub(super) fn led(&self, now_s: f64, simulated: &Inputs) -> Option<Inputs> {
         let inputs = *simulated;
         let reading = self.newest?;
@@ -78,11 +79,11 @@ impl Held {
         })
     }
 
-    /// Gives the loop's force to the hand.
+    /// Sends the loop's force to the handle.
     pub(super) fn write(&mut self, outputs: &Outputs) {
         let switched = std::mem::replace(&mut self.driven, outputs.drives) != outputs.drives;
         let Some(handle) = self.slot.device() else { return };
-        // Switched on only by an engagement: a handle that was opened again stays off until the next one.
+        // Only an engagement switches it on: a handle that was reopened stays off until the next engagement.
         if switched {
             handle.switch_force(outputs.drives);
         }

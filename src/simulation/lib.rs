@@ -1,7 +1,7 @@
-//! Simulation: hand, tissue, arm, and a person at the arm.
+//! Simulation of hand, tissue, arm, and a person at the arm.
 //!
-//! Takes the loop's outputs and returns what a rig would measure (m, N, workspace frame). A scene lists what a
-//! simulation contains; what it does not list is not computed. Values that are not finite are ignored.
+//! Takes the loop's outputs and returns what a rig would measure (m, N, workspace frame). A scene lists the parts of a
+//! simulation; parts that are not listed are not computed. Values that are not finite are ignored.
 
 pub mod camera;
 mod carrying;

@@ -1,5 +1,4 @@
-//! A simulated person at the arm who follows the instructions of a calibration, correctly or, on purpose, with a
-//! mistake.
+//! A simulated person at the arm who follows the instructions of a calibration, correctly or with a deliberate mistake.
 
 mod handling;
 mod workspace;
@@ -17,7 +16,7 @@ use self::{
 use super::{hand::Move, trocar::shaft, world::Touch, wrist::along_shaft};
 use crate::scene::{Flaw, Person as PersonConfig, Scene};
 
-/// Speed at which the tool is rotated, rad/s, and shortest duration of a rotation, s.
+/// Speed at which the tool is rotated, rad/s, and minimum duration of a rotation, s.
 const TURN_RAD_S: f64 = 1.2;
 const TURN_MIN_S: f64 = 0.5;
 /// One push: durations of rise, hold, fall and pause, s.
@@ -26,22 +25,22 @@ const PUSH_S: [f64; 4] = [0.45, 0.5, 0.35, 0.4];
 const PUSH_N: [f64; 2] = [2.0, 4.0];
 /// Error of a push's direction, rad (standard deviation).
 const PUSH_MISSES_RAD: f64 = 0.08;
-/// Height at which the tip is moved, m.
+/// Range of the height at which the tip is moved, m.
 const CARRY_M: [f64; 2] = [0.004, 0.025];
 /// Range of the duration of one movement while working, s: slow enough that inertia can be neglected.
 const REACH_S: [f64; 2] = [0.5, 1.6];
-/// Share of the movements that are strokes in and out, as fast as a task is done; the range of their largest speed, m/s, and of the
-/// height from which they come down, m; the shortest duration of one, s.
+/// Fraction of the movements that are strokes in and out at the speed of a task; range of their peak speed, m/s, and of
+/// the starting height, m; minimum duration, s.
 const STROKES: f64 = 0.35;
 const STROKE_M_S: [f64; 2] = [0.08, 0.16];
 const STROKE_FROM_M: [f64; 2] = [0.020, 0.040];
 const STROKE_MIN_S: f64 = 0.25;
-/// Largest speed of a minimum-jerk movement over its mean speed.
+/// Peak speed of a minimum-jerk movement over its mean speed.
 const PEAK: f64 = 1.875;
 /// Time in which the tip is lifted off the tissue when work ends, s.
 const LIFT_S: f64 = 0.8;
 
-/// A person at the arm: holds it, and obeys each [`Prompt`].
+/// A person who holds the arm and follows each [`Prompt`].
 #[derive(Clone, Debug)]
 pub struct Person {
     flaw: Option<Flaw>,
@@ -100,7 +99,7 @@ impl Person {
         }
     }
 
-    /// Begins with the tip here (m), through the body wall.
+    /// Sets the initial position of the tip (m), through the body wall.
     #[must_use]
     pub fn begins_at(mut self, tip_m: Vector3<f64>) -> Self {
         self.tip_m = tip_m;
@@ -109,7 +108,6 @@ impl Person {
         self
     }
 
-    /// Orientation of the wrist.
     pub const fn world_from_s1(&self) -> UnitQuaternion<f64> {
         self.world_from_s1
     }
@@ -119,7 +117,7 @@ impl Person {
         (self.tip_m, self.velocity_m_s)
     }
 
-    /// What the person's hands do.
+    /// Forces of the person's hands.
     pub fn touch(&self) -> Touch {
         Touch { tip: self.push_n(), tool: self.touch_n(), stand: self.stand_n() }
     }
@@ -214,12 +212,12 @@ impl Person {
         }
     }
 
-    /// Slow periodic motion through many tilts.
+    /// A slow periodic motion through many tilts.
     fn wave(&mut self) {
         let t = self.time_s;
         let tilt = Vector3::new(1.1 * (0.9 * t).sin(), 1.0 * (0.67 * t + 0.4).sin(), 0.8 * (0.41 * t).sin());
         let target = along_shaft(&-Vector3::z()) * UnitQuaternion::from_scaled_axis(tilt);
-        // Approaches the target from the present orientation without a jump.
+        // Approaches the target from the current orientation without a jump.
         self.world_from_s1 = self.world_from_s1.try_slerp(&target, 0.004, 1e-9).unwrap_or(target);
         self.turn = (self.world_from_s1, self.world_from_s1);
     }
@@ -238,7 +236,7 @@ impl Person {
             if self.flaw == Some(Flaw::PushesOnePlane) {
                 miss.y *= 0.1;
             }
-            // If asked to push out of the plane, it pushes in some direction within it.
+            // If asked to push out of the plane, this person pushes in some direction within it.
             let asked = if asked.norm() < 0.1 { self.somewhere_down() } else { asked.normalize() };
             self.push = -(asked + miss).normalize() * self.between(PUSH_N);
             if self.flaw == Some(Flaw::LeansOnTheStand) {
@@ -251,7 +249,7 @@ impl Person {
         self.turn(dt_s);
     }
 
-    /// Applies to about every other push; those in between are correct.
+    /// Leans on the stand in about every other push; the others are correct.
     fn lean(&mut self) {
         let leans_n = if self.noise.uniform() < 0.5 { 1.2 } else { 0.0 };
         self.stand = Vector3::from_fn(|_, _| leans_n * self.noise.gaussian());
@@ -281,7 +279,7 @@ impl Person {
         self.reach_on(0.0);
     }
 
-    /// To another place, slowly.
+    /// Starts a slow movement to another position.
     fn reach(&mut self, contact: bool) -> Move {
         let z_m = if contact && self.noise.uniform() < 0.6 { self.pressed_m() } else { self.between(CARRY_M) };
         // Sometimes pauses, so that static friction of the seal is recorded too.
@@ -294,7 +292,7 @@ impl Person {
         Move { from_m: self.tip_m, to_m, seconds: self.between(REACH_S) }
     }
 
-    /// In or out at this place, briskly: down from a height and up from below.
+    /// Starts a fast stroke at this position: down from a height, or up from below.
     fn stroke(&mut self, contact: bool) -> Move {
         let is_up = self.tip_m.z - self.surface_z_m > 0.5 * (CARRY_M[0] + CARRY_M[1]);
         let z_m = match (is_up, contact) {
@@ -312,7 +310,7 @@ impl Person {
         -self.between(self.workspace.press_m)
     }
 
-    /// Continues the present movement; the shaft always points through the trocar.
+    /// Continues the current movement; the shaft always points through the trocar.
     fn reach_on(&mut self, dt_s: f64) {
         self.in_reach_s += dt_s;
         (self.tip_m, self.velocity_m_s) = self.reach.at(self.in_reach_s);

@@ -1,4 +1,4 @@
-//! A run: a rig, and the simulated scene for it.
+//! A run: a rig, and its simulated scene.
 
 use nima_core::impedance::SettingsError;
 use nima_machine::{
@@ -11,21 +11,19 @@ use nima_machine::{
 
 use crate::{Desk, Watched, Worlds, scene::Scene};
 
-/// Where a simulated rig tells of the objects of its scene, if there are any.
+/// Access to the objects of a simulated rig's scene, if there are any.
 type Objects = Option<Watched>;
 
-/// Description of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The rig.
     pub rig: RigConfig,
-    /// The simulated world.
     pub scene: Scene,
     /// Calibrations of the wrist sensor and tool of each side; may be empty if the force is measured at the tip. They
     /// are not used on a rig with devices, where [`Handle::put_in_force`] sets them once a sensor has reported its
     /// identity.
     pub calibrations: [Calibrations; SIDES],
-    /// Engage as soon as every device delivers; ignored with real devices ([`RigConfig::is_harmless`]), which a person engages.
+    /// Engage as soon as every device delivers data. Ignored with real devices ([`RigConfig::is_harmless`]), which a
+    /// person engages.
     pub engage: bool,
 }
 
@@ -40,16 +38,16 @@ impl Plan {
         self.scene.measures_at_wrist(&self.rig, side)
     }
 
-    /// Whether the rig may be engaged automatically: the force at every tip is known, or may become known with the
-    /// devices, and the followers will follow. On a simulated rig a person at the arm keeps it from following; at an emulated
-    /// one he comes only for a calibration.
+    /// Whether the rig may be engaged automatically: the force at every tip is known or can become known with the
+    /// devices, and the followers can follow. On a simulated rig a person at the arm prevents the arm from following;
+    /// on an emulated rig a person comes only for a calibration.
     pub fn may_engage(&self) -> bool {
         let knowable = |side: Side| self.rig.devices.is_some() || self.calibrations[side.index()].gravity.is_some();
         let follows = self.rig.devices.is_some() || self.scene.person.is_none();
         follows && Side::ALL.into_iter().all(|side| !self.is_at_wrist(side) || knowable(side))
     }
 
-    /// What the loop of this plan is made of.
+    /// Returns the origin of this plan's loop.
     pub fn origin(&self) -> Origin {
         // Cross-talk is identified only if the scene contains it.
         let mut rig = self.rig.clone();
@@ -66,7 +64,7 @@ impl Plan {
         self.origin().control()
     }
 
-    /// The loop of this plan with its rig, ready to start.
+    /// Returns the loop of this plan with its rig, ready to start.
     ///
     /// # Errors
     /// [`StartError`] if settings or devices are invalid.
@@ -74,7 +72,7 @@ impl Plan {
         Ok(self.watched_assembly()?.0)
     }
 
-    /// The same, and where a simulated rig tells of the objects of its scene, if there are any.
+    /// Like [`assembly`](Self::assembly), with access to the objects of a simulated rig's scene, if there are any.
     ///
     /// # Errors
     /// As [`assembly`](Self::assembly).
@@ -84,7 +82,7 @@ impl Plan {
         Ok((Assembly { engage: self.engage && self.rig.is_harmless(), ..assembly }, watched))
     }
 
-    /// The same on the simulated world of this plan, and where that tells of the objects of its scene, if there are any.
+    /// Like [`simulated`](Self::simulated), with access to the objects of the scene, if there are any.
     ///
     /// # Errors
     /// As [`simulated`](Self::simulated).
@@ -93,7 +91,7 @@ impl Plan {
         Ok((self.on(Box::new(worlds), Roster::new())?, watched))
     }
 
-    /// The same with the simulated world of this plan in place of its devices.
+    /// Returns the loop with the simulated world of this plan instead of its devices.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.
@@ -140,7 +138,7 @@ pub fn start(plan: &Plan) -> Result<Handle, StartError> {
     runtime::start(plan.assembly()?)
 }
 
-/// The same with a given rig, for instance one with injected faults.
+/// Like [`start`], with a given rig, for instance one with injected faults.
 ///
 /// # Errors
 /// As [`start`].
@@ -157,7 +155,7 @@ pub fn start_simulated(plan: &Plan, speed: f64) -> Result<Handle, StartError> {
     Ok(start_watched(plan, speed)?.0)
 }
 
-/// The same, and where it tells of the objects of the scene, if there are any.
+/// Like [`start_simulated`], with access to the objects of the scene, if there are any.
 ///
 /// # Errors
 /// As [`start`].
@@ -201,7 +199,7 @@ pub fn run_virtual(
     run_virtual_on(plan, VirtualClock::PERFECT, seconds, each)
 }
 
-/// The same with late ticks, as this clock has them.
+/// Like [`run_virtual`], with the late ticks of this clock.
 ///
 /// # Errors
 /// As [`run_virtual`].
@@ -305,7 +303,7 @@ mod tests {
         }
     }
 
-    /// A world that is delayed once, much longer than a stall may last.
+    /// A world that is delayed once, much longer than the longest allowed stall.
     struct HeldUp(Worlds);
 
     impl Rig for HeldUp {

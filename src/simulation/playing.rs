@@ -1,4 +1,4 @@
-//! Both instruments of a simulation among the objects that they share, and the training task that is done with them.
+//! Both instruments of a simulation with their shared objects, and the training task performed with them.
 
 mod lumps;
 
@@ -12,11 +12,11 @@ use crate::{
 };
 use lumps::Palpation;
 
-/// A moment is told every so many s, within a microsecond: times of the loop are rounded.
+/// Interval between two reported states, s; within a microsecond, because times of the loop are rounded.
 const MOMENT_EVERY_S: f64 = 0.01;
 const ROUNDING_S: f64 = 1e-6;
 
-/// The objects, what happens to them, and whether the task is done.
+/// The objects, their events, and whether the task is done.
 #[derive(Clone, Debug)]
 pub(super) struct Playing {
     game: Game,
@@ -26,7 +26,7 @@ pub(super) struct Playing {
     teller: Teller,
 }
 
-/// What is played.
+/// The kind of task.
 #[derive(Clone, Debug)]
 enum Game {
     Rings(Box<Rings>),
@@ -34,13 +34,12 @@ enum Game {
     Lumps(Box<Palpation>),
 }
 
-/// Rings on pegs.
 #[derive(Clone, Debug)]
 struct Rings {
     objects: Objects,
     watch: Watch,
     task: PegTransfer,
-    /// What the screen shows of it.
+    /// Progress for the screen.
     counted: Training,
 }
 
@@ -57,7 +56,7 @@ impl Game {
         scene.objects.as_ref().map(rings).or_else(|| scene.wire.as_ref().map(wire)).or_else(lumps)
     }
 
-    /// One period; what happened goes to `tell`, with how long ago it did, s.
+    /// Simulates one period; `tell` receives each event with its age, s.
     fn step(&mut self, instruments: &[Option<Instrument>; SIDES], tell: &mut dyn FnMut(f64, Event)) -> [Loads; SIDES] {
         match self {
             Self::Rings(rings) => rings.step(instruments, tell),
@@ -71,7 +70,7 @@ impl Game {
         }
     }
 
-    /// Whether this can be done in it; then it is.
+    /// Performs the action if the task has it; returns whether it has.
     fn act(&mut self, act: Act, side: Side, at: &Instrument, tell: &mut dyn FnMut(f64, Event)) {
         match (self, act) {
             (Self::Lumps(palpation), Act::Mark) => palpation.mark(side, &at.tip_m, tell),
@@ -87,7 +86,7 @@ impl Game {
                 both.1.begin();
                 tell(0.0, Event::Begun);
             }
-            // Rings lie where they are; a wire has nothing to mark, and its goal ends the trial.
+            // Rings cannot be marked; on a wire there is nothing to mark, and reaching the goal ends the trial.
             (Self::Rings(_), _) | (Self::Wire(_), Act::Mark | Act::End) => {}
         }
     }
@@ -135,13 +134,14 @@ impl Rings {
 }
 
 impl Playing {
-    /// Of this scene; `None` if it has nothing that is played with.
+    /// Makes the game of this scene; `None` if it has no objects.
     pub(super) fn of(scene: &Scene, period_s: f64, teller: Teller) -> Option<Self> {
         let game = Game::of(scene, period_s)?;
         Some(Self { game, acts: [Acts::NONE; SIDES], is_done: false, told_s: f64::NEG_INFINITY, teller })
     }
 
-    /// One period, at whose end it is `t_s` by the loop's clock, the instruments are here, and so much has been done.
+    /// Simulates one period that ends at `t_s` on the loop's clock, with the instruments at these poses and these
+    /// actions done.
     pub(super) fn step(
         &mut self,
         t_s: f64,
@@ -150,7 +150,7 @@ impl Playing {
     ) -> [Loads; SIDES] {
         let Self { game, is_done, teller, .. } = self;
         let mut tell = |age_s: f64, event: Event| {
-            // A task ends once; what is done after it is not part of the trial.
+            // A task ends once; actions after the end are not part of the trial.
             let again = *is_done && event == Event::Ended;
             *is_done = event != Event::Begun && (*is_done || event == Event::Ended);
             if !again {

@@ -1,4 +1,4 @@
-//! Scene files (TOML): the content of a simulation. What a scene does not list is not computed.
+//! Scene files (TOML): the parts of a simulation. Parts that a scene does not list are not computed.
 
 mod ground;
 mod mounted;
@@ -24,13 +24,11 @@ pub use wrist::{Flaw, Imu, Person, TissueSensor, Trocar, Wrist};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// Name shown on the screen.
     pub name: String,
     /// One sentence for the presenter.
     pub description: String,
     /// Seed of all random sequences of the scene.
     pub seed: u64,
-    /// The surgeon's hand and its task.
     pub hand: Hand,
     /// Targets of the task (tops of pegs, m, workspace frame), visited by the hand in turn.
     pub targets_m: Vec<Vector3<f64>>,
@@ -38,28 +36,26 @@ pub struct Scene {
     pub trocar_m: Vector3<f64>,
     /// The left hand's part, in scenes with two hands.
     pub left: Option<LeftHand>,
-    /// The force on an axis depends on motion along other axes, so the full matrix `M` must be identified.
+    /// Whether the force on an axis depends on motion along other axes, so that the full matrix `M` must be identified.
     #[serde(default)]
     pub cross_talk: bool,
     /// Soft tissue under the pegs.
     pub tissue: Option<Tissue>,
-    /// Layers on the tissue, the uppermost first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layers: Vec<Layer>,
-    /// Lumps in the tissue.
     pub lumps: Option<Lumps>,
-    /// The tissue's force fades while it is held.
+    /// Whether the tissue's force fades while it is held.
     pub relaxation: Option<Relaxation>,
     /// A membrane over the tissue.
     pub membrane: Option<Membrane>,
-    /// Walls.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<Wall>,
-    /// Rings and pegs, and jaws that hold them. The hands then carry rings in place of pressing at the targets.
+    /// Rings and pegs, and jaws that hold them. The hands then carry rings instead of pressing at the targets.
     pub objects: Option<crate::physics::Setting>,
-    /// A wire, and loops at the instruments. The hand then leads its loop along the wire in place of pressing at the targets.
+    /// A wire, and loops at the instruments. The hand then leads its loop along the wire instead of pressing at the
+    /// targets.
     pub wire: Option<crate::physics::WireSetting>,
-    /// What is done, and scored.
+    /// The scored task.
     pub task: Option<Task>,
     /// The leader device.
     pub leader: Option<Leader>,
@@ -77,17 +73,14 @@ pub struct Scene {
     pub person: Option<Person>,
 }
 
-/// The left hand's part of a scene; everything else is common to both hands.
+/// The left hand's part of a scene; all other parts are common to both hands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeftHand {
-    /// Its targets, m.
     pub targets_m: Vec<Vector3<f64>>,
-    /// Its trocar, m.
     pub trocar_m: Vector3<f64>,
 }
 
-/// The simulated surgeon's hand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hand {
@@ -103,7 +96,7 @@ pub struct Hand {
     pub drag_m: f64,
     /// Amplitude of physiological tremor, m (8-12 Hz).
     pub tremor_m: f64,
-    /// How far the hand aims beside a wire, m; standard deviation on each axis.
+    /// Lateral error of the hand's aim along a wire, m; standard deviation on each axis.
     #[serde(default)]
     pub aim_error_m: f64,
     /// Effective mass of hand and handle, kg.
@@ -112,10 +105,11 @@ pub struct Hand {
     pub grip_stiffness_n_m: f64,
     /// Damping of the grip, N s/m.
     pub grip_damping_n_s_m: f64,
-    /// What the speed of all movements of the task is multiplied by: the pace of one person and another.
+    /// Factor on the speed of all movements of the task, to represent different persons.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub pace: f64,
-    /// The force that the person means to feel, N: of more, the hand makes less and goes on more slowly. Left out, it feels nothing.
+    /// The force that the person intends to feel, N; above it, the hand yields and slows down. If omitted, the hand has
+    /// no force perception.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intended_n: Option<f64>,
 }
@@ -133,17 +127,15 @@ fn is_one(pace: &f64) -> bool {
     *pace == one()
 }
 
-/// The leader device's measurable limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Leader {
     /// Resolution of the position reading, m (Omega.7: 0.01 mm).
     pub resolution_m: f64,
-    /// Largest force, N (Omega.7: 12 N).
+    /// Maximum force, N (Omega.7: 12 N).
     pub force_max_n: f64,
 }
 
-/// The follower's tracking behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Follower {
@@ -188,7 +180,7 @@ impl Scene {
         }
     }
 
-    /// The lumps of the scene, with a place for each that is drawn by its seed.
+    /// Returns the lumps of the scene, with the drawn ones at positions determined by its seed.
     pub fn placed_lumps(&self) -> Option<Lumps> {
         self.lumps.as_ref().map(|lumps| match &self.tissue {
             Some(tissue) => lumps.placed(self.seed, tissue.size_m),
@@ -196,12 +188,13 @@ impl Scene {
         })
     }
 
-    /// Whether the scene hides something at places that its seed decides.
+    /// Whether the scene hides objects at positions determined by its seed.
     pub fn is_drawn_by_lot(&self) -> bool {
         self.lumps.as_ref().is_some_and(|lumps| lumps.drawn.is_some())
     }
 
-    /// The same with what it hides elsewhere, by this seed or the next one that has room for all; as it is if it hides nothing.
+    /// Returns the scene with its hidden objects at other positions, determined by this seed or the next one that has
+    /// room for all; unchanged if it hides nothing.
     #[must_use]
     pub fn drawn_anew(self, seed: u64) -> Self {
         if !self.is_drawn_by_lot() {
@@ -211,7 +204,8 @@ impl Scene {
         drawn.into_iter().find(|scene| scene.validate().is_ok()).unwrap_or(self)
     }
 
-    /// Whether the hands do a training task with something that the scene simulates for both: rings, a wire, or lumps that are looked for.
+    /// Whether the hands perform a training task with objects that the scene simulates for both: rings, a wire, or
+    /// lumps to find.
     pub fn is_played(&self) -> bool {
         self.objects.is_some() || self.wire.is_some() || self.is_searched()
     }
@@ -253,7 +247,7 @@ impl Scene {
         Self::parse(&path, &text)
     }
 
-    /// The scene that this text of a file describes.
+    /// Parses the text of a scene file.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -271,10 +265,11 @@ impl Scene {
         Ok(scene)
     }
 
-    /// The same without its texts.
+    /// Returns the scene without its texts.
     #[must_use]
     pub fn anonymous(mut self) -> Self {
-        // Without `..`: a field that is added does not compile until somebody decides whether it may tell who or where.
+        // Without `..`, so that a new field does not compile until it is decided whether it may reveal a person or
+        // place.
         let Self {
             name,
             description,
@@ -309,13 +304,10 @@ impl Scene {
         self
     }
 
-    /// The names of the built-in scenes.
     pub fn names() -> impl Iterator<Item = &'static str> {
         SCENES.into_iter().map(|(name, _)| name)
     }
 
-    /// Checks every value's range.
-    ///
     /// # Errors
     /// [`ConfigError`] for the first value outside its range, with its key.
     pub fn validate(&self) -> Result<(), ConfigError> {

@@ -1,4 +1,4 @@
-//! What the screen shows to the person at the arms, and its form as a line of text.
+//! Instructions on the screen for the person at the arms, and their form as a line of text.
 
 use std::{fmt, str::FromStr};
 
@@ -6,27 +6,27 @@ use nalgebra::{Quaternion, UnitQuaternion, UnitVector3, Vector3};
 use nima_core::calibration::frames::Move;
 use nima_machine::rig::{Prompt, Side};
 
-/// What the person at the arms is to do.
+/// The task of the person at the arms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Task {
-    /// No calibration: the instrument is in the trocar, and nobody touches the arm.
+    /// No calibration: the instrument is in the trocar, and no one touches the arm.
     #[default]
     Surgery,
-    /// Gravity: the instrument is taken out of the trocar, and nothing is near it.
+    /// Gravity: the instrument is out of the trocar, and nothing is near it.
     Gravity,
     /// Correspondence: the tissue lies on its sensor, without the body wall.
     Correspondence,
     /// Tip force: through the trocar onto the tissue.
     TipForce,
-    /// Tip: the instrument is out of the trocar, its tip in a dimple.
+    /// Tip: the instrument is out of the trocar, with its tip in a dimple.
     Tip,
-    /// Hand-eye: it is out of the trocar, its marker in the tracker's sight.
+    /// Hand-eye: the instrument is out of the trocar, with its marker in the tracker's view.
     HandEye,
-    /// Trocar: it stays in the trocar, above the tissue.
+    /// Trocar: the instrument stays in the trocar, above the tissue.
     Trocar,
-    /// Table: its tip touches points of the table; nothing lies on it.
+    /// Table: its tip touches points of the table, which is empty.
     Table,
-    /// View: its tip, then the handle, is moved in the picture's directions.
+    /// View: its tip, then the handle, is moved in the directions of the image.
     View,
 }
 
@@ -44,7 +44,7 @@ impl Task {
     ];
 }
 
-/// What the screen shows: which arm is calibrated, which calibration is open, and its present instruction.
+/// The content of the screen: the arm being calibrated, the open calibration, and its current instruction.
 ///
 /// As text, `right gravity rest` or `left correspondence push 0 0 -1`:
 ///
@@ -59,11 +59,8 @@ impl Task {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Screen {
-    /// The arm.
     pub side: Side,
-    /// The calibration.
     pub task: Task,
-    /// The instruction.
     pub prompt: Prompt,
 }
 
@@ -88,12 +85,12 @@ impl fmt::Display for Screen {
     }
 }
 
-/// A move by its place in the order in which moves are asked for.
+/// Returns the index of a move in the order in which moves are requested.
 fn number_of(way: Move) -> usize {
     Move::ALL.iter().position(|known| *known == way).unwrap_or_default()
 }
 
-/// A whole number from 0 on, as a number of a line.
+/// Parses a whole number from 0 up.
 fn whole(x: f64) -> Result<u8, NoScreen> {
     if x.fract() == 0.0 && (0.0..=255.0).contains(&x) { Ok(x as u8) } else { Err(NoScreen) }
 }
@@ -102,7 +99,7 @@ fn way(x: f64) -> Result<Move, NoScreen> {
     Move::ALL.get(usize::from(whole(x)?)).copied().ok_or(NoScreen)
 }
 
-/// A line that is no screen.
+/// A line that is not a valid screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "expected: SIDE TASK PROMPT, with right or left; surgery, gravity, correspondence, tip-force, tip, hand-eye, trocar, table or view; rest, \

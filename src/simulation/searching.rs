@@ -1,8 +1,8 @@
-//! The task of a hand that looks for lumps: it strokes over the tissue in lanes at an even depth, feels what its handle gives it, and then presses
-//! and marks where that was more than around.
+//! The task of a hand that looks for lumps: it strokes over the tissue in lanes at an even depth, records the force of
+//! its handle, and then presses and marks where the force was above its surroundings.
 //!
-//! It knows nothing of the lumps but that they are stiffer; what it feels has gone through sensor, link, rendering and gates. Memory is taken at the
-//! beginning, and no step works for long: one cell of the map is judged in each.
+//! It has no other information about the lumps than their higher stiffness; the force it feels has passed sensor, link,
+//! rendering and gates. Memory is allocated at the beginning, and every step is short: each judges one cell of the map.
 
 use nalgebra::Vector3;
 use nima_machine::rig::Act;
@@ -12,49 +12,51 @@ use crate::{
     scene::{Hand, Scene},
 };
 
-/// Distance from lane to lane, and length of a cell of the map, m.
+/// Distance between lanes, and length of a cell of the map, m.
 const LANE_M: f64 = 0.004;
 const CELL_M: f64 = 0.002;
-/// Least distance of a lane from the tissue's edge, m.
+/// Minimum distance of a lane from the tissue's edge, m.
 const EDGE_M: f64 = 0.010;
-/// How fast the hand strokes, on the average, m/s; how long it takes to the next lane, s.
+/// Mean speed of the strokes, m/s, and time to move to the next lane, s.
 const STROKES_M_S: f64 = 0.025;
 const SHIFTS_S: f64 = 0.4;
-/// Height at which the hand goes from place to place, m.
+/// Height at which the hand moves between positions, m.
 const CARRY_M: f64 = 0.015;
-/// Around a cell are those at a distance from here to there, m: not under the same lump.
+/// Minimum and maximum distance of the cells that count as surroundings, m: not above the same lump.
 const AROUND_M: [f64; 2] = [0.008, 0.015];
-/// So many times as much as around it is felt over a lump.
+/// Force above a lump as a multiple of the force around it.
 const MORE: f64 = 1.12;
-/// What lies this near to the most is taken for the same lump when its middle is worked out, m; and when the next one is looked for.
+/// Cells within this distance of the maximum count as the same lump, m, when its middle is computed and when the next
+/// lump is searched for.
 const SAME_M: f64 = 0.006;
 const NEXT_M: f64 = 0.010;
-/// Most places that are marked.
+/// Maximum number of marks.
 const MARKS_MOST: u32 = 16;
-/// Most cells, and most of them around one.
+/// Maximum number of cells, and of cells around one.
 const CELLS_MOST: usize = 8192;
 const AROUND_MOST: usize = 256;
 /// Rest after the task, s.
 const DONE_S: f64 = 1e6;
 
-/// The map of what was felt, and where the hand is in its task.
+/// The map of felt forces, and the progress of the hand's task.
 #[derive(Clone, Debug)]
 pub(super) struct Searching {
     /// Lanes, and cells of each.
     size: [usize; 2],
     /// The middle of the first cell of the first lane, m.
     first_m: [f64; 2],
-    /// Sum of the forces felt in each cell, N, and how many.
+    /// Sum of the forces felt in each cell, N, and their number.
     felt_n: Vec<(f64, u32)>,
-    /// How many times as much as around it was felt in each cell.
+    /// Force in each cell as a multiple of the force around it.
     more: Vec<f64>,
-    /// Cells around one, as steps from it (lanes, cells).
+    /// Surrounding cells as offsets (lanes, cells).
     around: Vec<[isize; 2]>,
     scratch: Vec<f64>,
     /// The next cell to be judged.
     judged: usize,
     marked: u32,
-    /// The parts in which the map is made end before this one, the first of those in which a place is visited, and the last.
+    /// Indices of parts of the task: the first part after the map is made, the first part of a visit, and the last
+    /// part.
     stroked: usize,
     visit: usize,
     height_m: f64,
@@ -62,16 +64,16 @@ pub(super) struct Searching {
     hand: Hand,
 }
 
-/// Parts of a visit: there, down, hold and mark, up.
+/// Parts of a visit: approach, press, hold and mark, lift.
 const VISIT: usize = 4;
 
 impl Searching {
-    /// The task of the hand in this scene, with what it has to remember for it; `None` without tissue.
+    /// Returns the task of the hand in this scene, with the state of its search; `None` without tissue.
     pub(super) fn of(scene: &Scene) -> Option<(Box<Self>, Vec<Part>)> {
         let tissue = scene.tissue?;
         let half_m = tissue.size_m.map(|size_m| (0.5 * size_m - EDGE_M).max(CELL_M));
         let [mut cells, mut lanes] = [half_m[0] / CELL_M, half_m[1] / LANE_M].map(|half| 2 * half.floor() as usize + 1);
-        // A tissue of metres is searched in its middle.
+        // Of a very large tissue only the middle is searched.
         lanes = lanes.min(CELLS_MOST / 64);
         cells = cells.min(CELLS_MOST / lanes);
         let size = [lanes, cells];
@@ -95,7 +97,7 @@ impl Searching {
         Some((search, parts))
     }
 
-    /// The middle of a cell, m; at the depth of the strokes.
+    /// The middle of a cell, m, at the depth of the strokes.
     fn place_m(&self, [lane, cell]: [usize; 2]) -> Vector3<f64> {
         let [y_m, x_m] = self.first_m;
         Vector3::new(x_m + cell as f64 * CELL_M, y_m + lane as f64 * LANE_M, self.depth_m)
@@ -129,7 +131,7 @@ impl Searching {
         }
         let up_m = self.above(&end_m);
         go(up_m, press_s);
-        // The map is judged while the hand waits: a cell in each step of a millisecond, or of any other length.
+        // The map is judged while the hand waits: one cell in each step, whatever its length.
         go(up_m, 1.0 + 1e-3 * (lanes * cells) as f64);
         self.stroked = parts.len() - 2;
         self.visit = parts.len();
@@ -141,17 +143,17 @@ impl Searching {
         parts
     }
 
-    /// What the hand feels here (N) in this part of its task; once a step.
+    /// Records the force (N) that the hand feels here in this part of its task; call it once per step.
     pub(super) fn feel(&mut self, part: usize, at_m: &Vector3<f64>, force_n: &Vector3<f64>) {
         if part >= self.stroked {
-            // The waiting: also beyond it, should it have been too short.
+            // Judges while waiting, and also later if the waiting was too short.
             self.judge();
             return;
         }
         let [y_m, x_m] = self.first_m;
         let [lane, cell] = [(at_m.y - y_m) / LANE_M, (at_m.x - x_m) / CELL_M].map(f64::round);
         let is_inside = lane >= 0.0 && cell >= 0.0 && (lane as usize) < self.size[0] && (cell as usize) < self.size[1];
-        // On its way down, or between lanes, it feels something else.
+        // On its way down or between lanes the force has other causes.
         let is_stroking = (at_m.y - y_m - lane * LANE_M).abs() < 0.25 * LANE_M && at_m.z < self.depth_m + 0.5 * CARRY_M;
         if part > 1 && is_inside && is_stroking && force_n.z.is_finite() {
             let felt = &mut self.felt_n[lane as usize * self.size[1] + cell as usize];
@@ -163,7 +165,7 @@ impl Searching {
         self.felt_n.get(at).filter(|(_, count)| *count > 0).map(|(sum_n, count)| sum_n / f64::from(*count))
     }
 
-    /// Compares the next cell with the middle one of those around it.
+    /// Compares the next cell with the median of its surroundings.
     fn judge(&mut self) {
         let at = self.judged;
         if at >= self.felt_n.len() {
@@ -186,7 +188,8 @@ impl Searching {
         }
     }
 
-    /// The part that follows, after those of a visit were written anew for the next place; the last two when there is none.
+    /// Returns the next part, after rewriting the parts of a visit for the next position; the last two parts if there
+    /// is none.
     pub(super) fn onward(&mut self, next: usize, task: &mut [Part]) -> usize {
         if next != self.visit && next != self.visit + VISIT {
             return next;
@@ -208,7 +211,7 @@ impl Searching {
         self.visit
     }
 
-    /// The middle of what was felt most and not visited yet; it is then forgotten.
+    /// Returns the middle of the strongest lump that has not been visited, and removes it from the map.
     fn next_place_m(&mut self) -> Option<Vector3<f64>> {
         let most = |best: Option<usize>, at: usize| match best {
             Some(best) if self.more[best] >= self.more[at] => Some(best),
@@ -238,7 +241,7 @@ fn part(from_m: Vector3<f64>, to_m: Vector3<f64>, seconds: f64, then: Option<Act
     Part { way: Move { from_m, to_m, seconds }, grip_rad: [0.0; 2], then }
 }
 
-/// The steps to all cells around one.
+/// Offsets of the cells around one.
 fn around() -> Vec<[isize; 2]> {
     let [least_m, most_m] = AROUND_M;
     let [lanes, cells] = [most_m / LANE_M, most_m / CELL_M].map(|most| most.ceil() as isize);
@@ -251,7 +254,7 @@ fn around() -> Vec<[isize; 2]> {
 mod tests {
     use super::*;
 
-    /// Strokes over tissue that is this much stiffer at a place, and gives where the hand then marks.
+    /// Strokes over tissue that is stiffer at a position by this factor, and returns where the hand then marks.
     fn marks(more: impl Fn(&Vector3<f64>) -> f64) -> Vec<Vector3<f64>> {
         let scene = Scene::load("find_lumps").unwrap();
         let (mut search, mut task) = Searching::of(&scene).unwrap();
@@ -277,7 +280,7 @@ mod tests {
     fn it_marks_each_place_that_is_stiffer_than_around_and_no_other() {
         let lumps_m = [[-0.03, 0.02], [0.01, -0.015], [0.041, 0.027], [-0.045, -0.03]];
         let more = |at_m: &Vector3<f64>| {
-            // The tissue as a whole is stiffer to the right.
+            // The tissue as a whole becomes stiffer to the right.
             let even = 1.0 + 2.0 * at_m.x;
             let over = lumps_m.iter().any(|[x, y]| (at_m.x - x).hypot(at_m.y - y) < 0.005);
             even * if over { 1.3 } else { 1.0 }

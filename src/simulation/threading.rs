@@ -1,4 +1,4 @@
-//! The task of a hand that leads its loop along a wire: in short movements from place to place, each a little beside the wire, as aimed.
+//! The task of a hand that leads its loop along a wire in short movements, each with a small lateral error of aim.
 
 use nalgebra::Vector3;
 use nima_core::noise::Noise;
@@ -9,19 +9,19 @@ use crate::{
     scene::Hand,
 };
 
-/// Way along the wire that is made in one movement, m, and how fast, m/s.
+/// Distance along the wire per movement, m, and speed, m/s.
 const MOVEMENT_M: f64 = 0.009;
 const SPEED_M_S: f64 = 0.02;
-/// Where the hand begins, before the free end of the wire, m.
+/// Start position of the hand, in front of the free end of the wire, m.
 const BEFORE_M: f64 = 0.01;
-/// So far behind the goal it ends, m.
+/// End position beyond the goal, m.
 const BEHIND_M: f64 = 0.002;
 /// Rest after the task, s.
 const DONE_S: f64 = 1e6;
-/// Keeps the errors of aim apart from the other lots of the seed.
+/// Makes the errors of aim independent of the other random sequences of the seed.
 const LOT: u64 = 0x3_1e5;
 
-/// The way along the wire.
+/// Returns the movements along the wire.
 pub(super) fn way(setting: &WireSetting, hand: &Hand, seed: u64) -> Vec<Part> {
     let curve = setting.curve();
     let goal_m = (curve.given_m(setting.goal_point) + BEHIND_M).min(curve.length_m());
@@ -31,7 +31,7 @@ pub(super) fn way(setting: &WireSetting, hand: &Hand, seed: u64) -> Vec<Part> {
     let mut parts = vec![part(at_m, at_m, hand.hold_s)];
     for step in 0..=steps {
         let share = f64::from(step) / f64::from(steps);
-        // Not at the goal: there the hand must be inside the loop's reach of it.
+        // No error at the goal: there the hand must be within the loop's reach of it.
         let error_m = if step < steps { hand.aim_error_m } else { 0.0 };
         let to_m = curve.at(goal_m * share)
             + beside(&curve, goal_m * share) * error_m * lot.gaussian()
@@ -47,14 +47,13 @@ fn part(from_m: Vector3<f64>, to_m: Vector3<f64>, seconds: f64) -> Part {
     Part { way: Move { from_m, to_m, seconds: seconds.max(0.05) }, grip_rad: [0.0; 2], then: None }
 }
 
-/// In front of the free end, in the direction in which the wire begins.
+/// A position in front of the free end, in the direction in which the wire begins.
 fn before(curve: &Curve) -> Vector3<f64> {
     let end_m = curve.at(0.0);
     let into = (curve.at(1e-3) - end_m).try_normalize(1e-9).unwrap_or_else(Vector3::x);
     end_m - into * BEFORE_M
 }
 
-/// The horizontal direction across the wire.
 fn beside(curve: &Curve, along_m: f64) -> Vector3<f64> {
     let along = curve.at(along_m + 5e-4) - curve.at(along_m - 5e-4);
     Vector3::z().cross(&along).try_normalize(1e-9).unwrap_or_else(Vector3::y)

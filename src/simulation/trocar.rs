@@ -32,7 +32,7 @@ impl Trocar {
         }
     }
 
-    /// Forgets all deformation: the instrument was taken out.
+    /// Removes all deformation: the instrument was taken out.
     pub(super) const fn relax(&mut self) {
         self.last = None;
         self.stretch_along_m = 0.0;
@@ -40,7 +40,7 @@ impl Trocar {
         self.force_n = Vector3::new(0.0, 0.0, 0.0);
     }
 
-    /// Direction of the shaft (towards the tip) and depth of the tip beyond the wall, m.
+    /// Returns the direction of the shaft (towards the tip) and the depth of the tip beyond the wall, m.
     pub fn shaft(&self, tip_m: &Vector3<f64>) -> (Vector3<f64>, f64) {
         shaft(&self.position_m, tip_m)
     }

@@ -1,4 +1,4 @@
-//! What others see of objects that move: where they are, and what happens to them.
+//! Read access to moving objects: their states and their events.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
@@ -8,48 +8,48 @@ use nima_machine::rig::SIDES;
 pub use crate::physics::RINGS_MAX;
 use crate::physics::{Loads, RingState};
 
-/// Marks of which a moment tells.
+/// Maximum number of marks in a state.
 pub const MARKS_MAX: usize = 32;
-/// Moments and happenings that wait for each reader; what does not fit is left out. Moments of 5 s: a loop on the virtual clock is 2.5 s
-/// ahead of its recorder at most.
+/// Capacity for states and events of each reader; more are dropped. States of 5 s: a loop on the virtual clock is at
+/// most 2.5 s ahead of its recorder.
 const MOMENTS: usize = 512;
 const HAPPENINGS: usize = 1024;
-/// Who can read: a screen or a score, a recording, and one more.
+/// Maximum number of readers: a screen or a score, a recording, and one more.
 const READERS: usize = 3;
 
-/// The objects of a scene at one time. Sides are indexed as everywhere.
+/// The objects of a scene at one time, indexed by side where they belong to one.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     /// Time of the loop, s.
     pub t_s: f64,
-    /// The rings; none beyond their number, and none that is out of view.
+    /// The rings; `None` beyond their number, and for a ring out of view.
     pub rings: [Option<RingState>; RINGS_MAX],
     /// Angle between the fingers of each instrument, rad.
     pub opening_rad: [f64; SIDES],
-    /// What acts on each instrument.
+    /// Forces on each instrument.
     pub loads: [Loads; SIDES],
-    /// What there is besides in a palpation, and with a wire.
+    /// Additional state of a palpation or a wire task.
     pub training: Training,
 }
 
-/// How far a training task has come.
+/// Progress of a training task.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Training {
-    /// The trial is over.
+    /// Whether the trial is over.
     pub ended: bool,
-    /// The places that were marked, in their order; none beyond their number.
+    /// The marked positions in their order; `None` beyond their number.
     pub marks: [Option<Mark>; MARKS_MAX],
-    /// How many were marked in all, and how many different lumps are among them.
+    /// Number of marks in total, and number of different lumps among them.
     pub marked: u32,
-    /// See `marked`. Not for the operator's eyes while the trial lasts.
+    /// See `marked`. Hidden from the operator during the trial.
     pub found: u32,
     /// The loop of each instrument.
     pub loops: [LoopSeen; SIDES],
-    /// How often loops touched the wire.
+    /// Number of contacts between loops and wire.
     pub touches: u32,
-    /// Share of the way to the goal that is done, 0 to 1.
+    /// Completed fraction of the path to the goal, 0 to 1.
     pub share: f64,
-    /// How often rings were handed over in mid-air, put on pegs, and dropped, in view or out of it.
+    /// Number of rings passed in mid-air, placed on pegs, and dropped, in or out of view.
     pub passed: u32,
     /// See `passed`.
     pub placed: u32,
@@ -57,25 +57,24 @@ pub struct Training {
     pub dropped: u32,
 }
 
-/// A place that was marked.
+/// A marked position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    /// Where, on the tissue at rest, m.
+    /// On the tissue at rest, m.
     pub at_m: Vector3<f64>,
-    /// Whether a lump lies there. Not for the operator's eyes while the trial lasts.
+    /// Whether there is a lump. Hidden from the operator during the trial.
     pub is_true: bool,
 }
 
-/// A loop on a wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LoopSeen {
-    /// It touches the wire.
+    /// Whether it touches the wire.
     pub touches: bool,
-    /// The wire goes through it.
+    /// Whether the wire passes through it.
     pub on_wire: bool,
 }
 
-/// Where moments and happenings of a simulation come out. Nothing in it waits. Each reader has its own, with [`Watched::another`].
+/// Receives states and events of a simulation without blocking it. Each reader has its own, from [`Watched::another`].
 #[derive(Debug)]
 pub struct Watched {
     moments: Receiver<Moment>,
@@ -89,7 +88,6 @@ pub(super) struct Teller {
     readers: Vec<(Sender<Moment>, Sender<Happening>)>,
 }
 
-/// Both ends.
 pub(super) fn ends() -> (Teller, Watched) {
     let (first, mut watched) = reader();
     let mut readers = vec![first];
@@ -108,22 +106,22 @@ fn reader() -> ((Sender<Moment>, Sender<Happening>), Watched) {
 }
 
 impl Watched {
-    /// The same for another reader, who is told everything too; `None` when there are three already.
+    /// Returns another reader, which also receives everything; `None` if there are three already.
     pub fn another(&mut self) -> Option<Self> {
         self.others.pop()
     }
 
-    /// The moments since the last call, oldest first.
+    /// Returns the states since the last call, oldest first.
     pub fn moments(&self) -> impl Iterator<Item = Moment> + '_ {
         self.moments.try_iter()
     }
 
-    /// The newest moment, if there is a new one.
+    /// Returns the newest state, if there is a new one.
     pub fn newest(&self) -> Option<Moment> {
         self.moments.try_iter().last()
     }
 
-    /// What has happened since the last call.
+    /// Returns the events since the last call.
     pub fn happenings(&self) -> impl Iterator<Item = Happening> + '_ {
         self.happenings.try_iter()
     }

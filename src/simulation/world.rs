@@ -47,18 +47,18 @@ pub struct World {
     carried: Option<UnitQuaternion<f64>>,
     /// Hands of a person outside this world.
     touch: Touch,
-    /// Body wall and tissue are out of the way.
+    /// Whether body wall and tissue have been removed.
     aside: bool,
-    /// The instrument has jaws.
+    /// Whether the instrument has jaws.
     jaws: bool,
-    /// What acts on the instrument's jaws, or on the loop at its tip.
+    /// Forces on the instrument's jaws, or on the loop at its tip.
     loads: crate::physics::Loads,
 }
 
-/// What a hand does among the objects of a scene.
+/// Activity of a hand among the objects of a scene.
 #[derive(Debug)]
 pub(super) enum Doing {
-    /// The parts of its task with jaws; none for a hand whose task is that of its targets.
+    /// The parts of its task with jaws; empty for a hand that follows its targets.
     Carrying(Vec<Part>),
     /// The parts of its task with a loop.
     Threading(Vec<Part>),
@@ -69,23 +69,22 @@ pub(super) enum Doing {
 /// Forces of a person's hands, N (`world`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
-    /// On the tip, which is pushed onto something that does not give way.
+    /// On the tip, which is pushed onto a rigid object.
     pub tip: Vector3<f64>,
-    /// On the tool.
     pub tool: Vector3<f64>,
     /// On the stand of the tissue; the tip does not feel it.
     pub stand: Vector3<f64>,
 }
 
-/// Longest time simulated in one exchange, s; after a longer stall the remainder is skipped.
+/// Maximum time simulated in one exchange, s; after a longer stall the remainder is skipped.
 const CATCH_UP_MAX_S: f64 = 0.2;
-/// Less of a period than this is not simulated until more is due: times of the loop are rounded.
+/// A smaller fraction of a period is not simulated until more is due, because times of the loop are rounded.
 pub(super) const ROUNDING_PERIODS: f64 = 1e-3;
-/// Longest integration step of the hand's motion, s; keeps it stable in slow loops.
+/// Maximum integration step of the hand's motion, s; keeps it stable in slow loops.
 const HAND_STEP_MAX_S: f64 = 1e-3;
 
 impl World {
-    /// The world of `scene` with `rate_hz` steps a second. The scene must have been validated.
+    /// The world of `scene` with `rate_hz` steps per second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
         let hand = Hand::new(scene);
         let start_m = hand.position_m();
@@ -117,7 +116,7 @@ impl World {
         }
     }
 
-    /// The same among objects that it shares with another one.
+    /// The same among objects that it shares with another world.
     pub(super) fn playing(scene: &Scene, rate_hz: f64, doing: Doing) -> Self {
         let jaws = matches!(doing, Doing::Carrying(_));
         let mut world = Self { jaws, ..Self::new(scene, rate_hz) };
@@ -134,12 +133,11 @@ impl World {
         world
     }
 
-    /// Where the tip is, m.
     pub(super) const fn tip_m(&self) -> Vector3<f64> {
         self.tip_m
     }
 
-    /// Where the instrument is. Its wrist holds the jaws upright.
+    /// Returns the pose of the instrument. Its wrist holds the jaws upright.
     pub(super) fn instrument(&self) -> Instrument {
         Instrument {
             tip_m: self.tip_m,
@@ -149,7 +147,7 @@ impl World {
         }
     }
 
-    /// What now acts on jaws or loop.
+    /// Sets the current forces on jaws or loop.
     pub(super) fn feel(&mut self, loads: &crate::physics::Loads) {
         self.loads = *loads;
     }
@@ -169,15 +167,15 @@ impl World {
         self.true_tip_n
     }
 
-    /// From now on the orientation of the wrist (`world_from_s1`) is set by an arm outside this world. The tip position
+    /// Lets an arm outside this world set the orientation of the wrist (`world_from_s1`) from now on. The tip position
     /// is still commanded.
     pub const fn carry(&mut self, world_from_s1: UnitQuaternion<f64>) {
         self.carried = Some(world_from_s1);
     }
 
-    /// Pauses the hand's task; the hand then follows the tip (true). Or continues it (false).
+    /// Pauses the hand's task, so that the hand follows the tip (true), or resumes it (false).
     pub fn wait(&mut self, waits: bool) {
-        // A person at the arm leads the handle beside it.
+        // A person at the arm may also lead the handle.
         let beside_m = self.person.as_ref().map_or_else(Vector3::zeros, Person::handle_m);
         self.hand.wait(waits.then_some(self.tip_m + beside_m));
     }
@@ -187,8 +185,8 @@ impl World {
         self.hand.wait(Some(at_m));
     }
 
-    /// From now on a person outside this world touches the tool like this, and has set body wall and tissue aside, or not.
-    /// A seal that comes back is undeformed.
+    /// Sets the touch of a person outside this world from now on, and whether body wall and tissue have been removed. A
+    /// seal that is put back is undeformed.
     pub fn touched(&mut self, touch: &Touch, aside: bool) {
         self.touch = *touch;
         if self.aside && !aside {
@@ -204,7 +202,7 @@ impl World {
         Some(self.advance_to(now_s, outputs))
     }
 
-    /// The same, but the hand waits only if [`World::wait`] says so.
+    /// Like [`exchange`](Self::exchange), but the hand waits only after [`World::wait`].
     pub fn advance_to(&mut self, now_s: f64, outputs: &Outputs) -> Inputs {
         let mut due_s = self.accept(now_s, outputs);
         while due_s > ROUNDING_PERIODS * self.period_s {
@@ -215,8 +213,9 @@ impl World {
         self.measure()
     }
 
-    /// Takes the loop's outputs; returns the time to be simulated until loop time `now_s`, s. It is exactly the time that has
-    /// passed, so that a late tick finds hand and tissue where they are by then; whole periods but for rounding are whole.
+    /// Takes the loop's outputs; returns the time to be simulated until loop time `now_s`, s. It is exactly the elapsed
+    /// time, so that a late tick finds hand and tissue in their current state; whole periods stay whole despite
+    /// rounding.
     pub(super) fn accept(&mut self, now_s: f64, outputs: &Outputs) -> f64 {
         self.take(outputs);
         if now_s - self.time_s > CATCH_UP_MAX_S {
@@ -228,7 +227,7 @@ impl World {
     }
 
     fn take(&mut self, outputs: &Outputs) {
-        // The force is limited by the leader's motors.
+        // The leader's motors limit the force.
         let most_n = self.leader.map_or(f64::INFINITY, |leader| leader.force_max_n);
         let asked = outputs.hand_force_n;
         let norm = asked.norm();
@@ -249,7 +248,7 @@ impl World {
         self.prompt = if outputs.prompt.is_finite() { outputs.prompt } else { Prompt::Rest };
     }
 
-    /// One step of at most a period.
+    /// Simulates one step of at most a period.
     pub(super) fn step(&mut self, dt_s: f64) {
         let substeps = (dt_s / HAND_STEP_MAX_S).ceil().max(1.0);
         for _ in 0..substeps as u32 {
@@ -270,7 +269,7 @@ impl World {
 
     fn follow(&mut self, dt_s: f64) {
         let Some(Follower { bandwidth_hz }) = self.follower else {
-            // A command holds for a period, however soon the next one comes.
+            // A command is valid for a period, however soon the next one arrives.
             self.tip_velocity_m_s = (self.command_m - self.tip_m) / dt_s.max(self.period_s);
             self.tip_m = self.command_m;
             return;

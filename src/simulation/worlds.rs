@@ -1,7 +1,7 @@
 //! The simulated rig: a world for each arm pair.
 //!
-//! The tissue of two worlds is the same: contact is local to a tip, so two tips can share it as long as they do not
-//! touch each other. Objects that move are shared by both instruments, and then these touch each other too.
+//! The tissue of both worlds is the same: contact is local to a tip, so two tips can share it as long as they do not
+//! touch each other. Moving objects are shared by both instruments, which then also touch each other.
 
 use nalgebra::Vector3;
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
@@ -15,19 +15,18 @@ use crate::{
     world::{Doing, ROUNDING_PERIODS},
 };
 
-/// The worlds of a scene.
 #[derive(Clone, Debug)]
 pub struct Worlds {
     arms: [Option<World>; SIDES],
     playing: Option<Playing>,
     period_s: f64,
-    /// By how much the hands are ahead of the objects, s.
+    /// How far the hands are ahead of the objects, s.
     ahead_s: f64,
     /// Applied until the next write.
     outputs: [Outputs; SIDES],
 }
 
-/// What each hand does in a scene that is played; none in another one.
+/// Activity of each hand in a scene with objects; `None` in other scenes.
 fn doing(scene: &Scene) -> [Option<Doing>; SIDES] {
     if let Some(setting) = &scene.objects {
         return carrying::ways(setting, scene.left.is_some()).map(|task| Some(Doing::Carrying(task)));
@@ -42,12 +41,12 @@ fn doing(scene: &Scene) -> [Option<Doing>; SIDES] {
 }
 
 impl Worlds {
-    /// The worlds of a scene with `rate_hz` steps a second. The scene must have been validated.
+    /// The worlds of a scene with `rate_hz` steps per second. The scene must have been validated.
     pub fn new(scene: &Scene, rate_hz: f64) -> Self {
         Self::watched(scene, rate_hz).0
     }
 
-    /// The same, and where it tells of the objects of the scene, if there are any.
+    /// Like [`new`](Self::new), with access to the objects of the scene, if there are any.
     pub fn watched(scene: &Scene, rate_hz: f64) -> (Self, Option<Watched>) {
         let period_s = 1.0 / rate_hz;
         let (teller, watched) = watched::ends();
@@ -64,19 +63,19 @@ impl Worlds {
         (Self { arms, playing, period_s, ahead_s: 0.0, outputs: [Outputs::SAFE; SIDES] }, watched)
     }
 
-    /// Where the tips are, m; those that the scene does not have are nowhere.
+    /// Positions of the tips, m; `None` for a side that the scene does not have.
     pub fn tips_m(&self) -> [Option<Vector3<f64>>; SIDES] {
         self.arms.each_ref().map(|world| world.as_ref().map(World::tip_m))
     }
 
-    /// Both instruments among the same objects, period by period.
+    /// Simulates both instruments with their shared objects, period by period.
     fn play(&mut self, now_s: f64) -> [Option<Inputs>; SIDES] {
         let Self { arms, playing: Some(playing), period_s, ahead_s, outputs } = self else { return [None; SIDES] };
         let mut left_s = 0.0_f64;
         for (world, outputs) in arms.iter_mut().zip(&*outputs) {
             if let Some(world) = world {
                 world.wait(outputs.tip_command_m.is_none());
-                // The worlds have one clock.
+                // The worlds have a common clock.
                 left_s = left_s.max(world.accept(now_s, outputs));
             }
         }
@@ -86,7 +85,7 @@ impl Worlds {
             let step_s = left_s.min(*period_s - *ahead_s);
             arms.iter_mut().flatten().for_each(|world| world.step(step_s));
             left_s -= step_s;
-            // The objects move in whole periods: when a late tick has ended, they wait for the rest of theirs.
+            // The objects move in whole periods: after a late tick they wait until a whole period is due.
             *ahead_s += step_s;
             if *ahead_s < *period_s * (1.0 - ROUNDING_PERIODS) {
                 continue;

@@ -8,12 +8,12 @@ use nima_core::{
 
 use crate::scene::{TissueSensor, Wrist as WristConfig};
 
-/// Forces on the instrument, N (`world`), by where they act.
+/// Forces on the instrument, N (`world`), by point of action.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Loads {
     /// Tissue on the tip.
     pub(super) tip_n: Vector3<f64>,
-    /// Torque of what the jaws hold, about the tip, N m.
+    /// Torque of the object in the jaws, about the tip, N m.
     pub(super) twist_nm: Vector3<f64>,
     /// Body wall on the shaft, and the depth of the tip beyond the wall, m.
     pub(super) wall: Option<(Vector3<f64>, f64)>,
@@ -23,7 +23,6 @@ pub(super) struct Loads {
     pub(super) stand_n: Vector3<f64>,
 }
 
-/// All sensors of one follower.
 #[derive(Clone, Debug)]
 pub(super) struct Wrist {
     config: WristConfig,
@@ -40,7 +39,6 @@ impl Wrist {
         Vector3::from_fn(|_, _| sigma * self.noise.gaussian())
     }
 
-    /// Readings of all sensors.
     pub(super) fn measure(&mut self, world_from_s1: &UnitQuaternion<f64>, loads: &Loads) -> WristSample {
         let mut sample = WristSample::of(self.wrench(world_from_s1, loads));
         sample.world_from_s1 = Some(*world_from_s1);

@@ -1,3 +1,3 @@
-//! Cargo takes build dependencies into account only where there is a build script.
+//! Cargo builds build dependencies only if there is a build script.
 
 fn main() {}

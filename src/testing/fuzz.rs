@@ -1,9 +1,9 @@
-//! Random loops that go on for as long as somebody lets them: `./dev fuzz`.
+//! Random test loops whose duration the caller sets: `./dev fuzz`.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Calls `round` with one seed after the other until `NIMA_FUZZ_SECONDS` are over, and at least once. The first seed is
-/// `NIMA_FUZZ_SEED`, so that a failure can be repeated, or taken from the clock. Gives the number of rounds.
+/// Calls `round` with successive seeds for `NIMA_FUZZ_SECONDS`, at least once, and returns the number of rounds. The
+/// first seed is `NIMA_FUZZ_SEED`, so that a failure can be repeated, or is taken from the clock.
 pub fn rounds(round: impl Fn(u64)) -> u64 {
     let told = |name| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let length = Duration::from_secs(told("NIMA_FUZZ_SECONDS").unwrap_or(0));

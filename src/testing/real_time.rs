@@ -1,4 +1,4 @@
-//! Tests on the real clock: a machine that is busy with other work must not make them fail.
+//! Tests in real time. They must not fail because the machine is busy with other work.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind, panic_any, resume_unwind},
@@ -13,24 +13,26 @@ use std::{
 use crate::unjudged;
 
 const ATTEMPTS: usize = 5;
-/// What a busy machine has held up for so long is better judged when nothing else runs.
+/// If a busy machine has delayed a test for this long, stop trying and judge it when nothing else runs.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// And all tests of a program together: from then on each has one attempt.
+/// Limit for all tests of a program together; after that, each test has one attempt.
 const PATIENCE_OF_ALL: Duration = Duration::from_mins(2);
-/// Attempts on a busy machine have taken so much, ms.
+/// Time spent so far on attempts on a busy machine, ms.
 static HELD_UP_MS: AtomicU64 = AtomicU64::new(0);
-/// Failures on a machine that was not busy. One may be chance: the machine can hold up the emulators' threads alone.
+/// Failures allowed on a machine that was not busy. One may be chance: the machine can delay the emulators' threads
+/// alone.
 const FAILURES_MAX: usize = 2;
 const NAP: Duration = Duration::from_millis(1);
 /// A quiet machine wakes a sleeping thread within this time, and never later than `PAUSE`.
 const LATE: Duration = Duration::from_millis(3);
 const PAUSE: Duration = Duration::from_millis(20);
-/// With less of the processors' time idle than this, other threads than the one that sleeps may be held up unseen.
+/// With a smaller idle fraction of processor time, threads other than the sleeping one may be delayed unnoticed.
 const IDLE_SHARE: f64 = 0.1;
-/// With more of it taken by the machine's host, threads are held up that no clock here sees.
+/// With a larger fraction of time taken by the virtual machine's host, threads are delayed in a way that no clock here
+/// shows.
 const STOLEN_SHARE: f64 = 0.03;
 
-/// Held by one test of a program at a time: devices in real time look silent beside other work that takes every core.
+/// Lets only one test of a program run at a time: devices in real time appear silent while other work takes every core.
 pub fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -38,13 +40,14 @@ pub fn alone() -> MutexGuard<'static, ()> {
 
 struct TooBusy;
 
-/// Ends an attempt within `judged` that has found by itself that it was held up.
+/// Ends an attempt within `judged` if the test itself has detected that it was delayed.
 pub fn too_busy() -> ! {
     panic_any(TooBusy)
 }
 
-/// Runs a test in real time. A failure on a busy machine is not judged, and the test is tried again; two failures on a quiet one fail it.
-/// A test that never ran on a quiet machine is reported (`unjudged`); `./dev test` runs it again when all else has ended.
+/// Runs a test in real time. A failure on a busy machine is not judged, and the test is tried again; two failures on a
+/// quiet machine fail it. A test that never ran on a quiet machine is reported (`unjudged`); `./dev test` runs it again
+/// after all others.
 pub fn judged(test: impl Fn()) {
     let watch = || {
         let watch = Watch::start();
@@ -59,8 +62,8 @@ pub fn judged(test: impl Fn()) {
     }
 }
 
-/// `watch` starts to watch the machine, and what it gives tells at the end of an attempt whether the machine was busy. `false` if the test
-/// neither passed nor failed.
+/// `watch` starts to observe the machine; the closure that it returns reports, at the end of an attempt, whether the
+/// machine was busy. Returns `false` if the test neither passed nor failed.
 fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy, patience: Duration) -> bool {
     let begin = Instant::now();
     let mut failures = 0;
@@ -79,14 +82,14 @@ fn judged_on<Busy: FnOnce() -> bool>(test: impl Fn(), watch: impl Fn() -> Busy, 
     false
 }
 
-/// A thread that sleeps a millisecond at a time and counts how often it is woken late.
+/// A thread that sleeps for one millisecond at a time and counts how often it wakes late.
 struct Watch {
     end: Arc<AtomicBool>,
     thread: JoinHandle<bool>,
     spent: Option<Spent>,
 }
 
-/// Time of all processors since the start of the machine, in the kernel's ticks.
+/// Time of all processors since the machine started, in kernel ticks.
 #[derive(Clone, Copy, Debug)]
 struct Spent {
     idle: f64,
@@ -94,7 +97,7 @@ struct Spent {
     all: f64,
 }
 
-/// `None` where the kernel does not tell.
+/// `None` where the kernel does not report it.
 fn spent() -> Option<Spent> {
     let text = std::fs::read_to_string("/proc/stat").ok()?;
     let times = text.lines().next()?.strip_prefix("cpu ")?.split_whitespace().take(8);
@@ -142,8 +145,8 @@ mod tests {
 
     use super::*;
 
-    /// Attempts that are made of a test which fails until attempt `good`, on a machine that is busy or not, and whether it was judged;
-    /// `None` if it failed.
+    /// Returns the number of attempts for a test that fails until attempt `good`, and whether it was judged; `None` if
+    /// it failed.
     fn attempts(good: usize, busy: bool, patience: Duration) -> Option<(usize, bool)> {
         let made = Cell::new(0);
         let test = || {

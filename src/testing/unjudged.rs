@@ -1,5 +1,5 @@
-//! Tests that could not judge. Cargo reports only passed and failed, so such a test returns and writes one line to standard error;
-//! `./dev test` lists these lines and fails on them.
+//! Tests that could not judge. Cargo reports only passed and failed, so such a test returns and writes one line to
+//! standard error; `./dev test` lists these lines and fails on them.
 
 use std::{
     fmt::Display,
@@ -19,7 +19,7 @@ pub fn recording(file: &str) -> Option<PathBuf> {
     found.then_some(path)
 }
 
-/// Reports as `left out` that this test needs a program or a permission that this machine lacks.
+/// Reports as `left out` that the test needs a program or a permission that this machine lacks.
 pub fn left_out(reason: &str) {
     report("left out", &reason);
 }
@@ -31,7 +31,7 @@ pub(crate) fn too_busy() {
 
 fn report(what: &str, reason: &dyn Display) {
     let line = line(what, current().name().unwrap_or("a test"), reason);
-    // Not `eprintln!`, which is kept from view when the test passes; at once, so that no other output comes in between.
+    // `eprintln!` is hidden when the test passes. One write call keeps other output from mixing with the line.
     let _ = std::io::stderr().write_all(line.as_bytes());
 }
 

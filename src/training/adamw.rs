@@ -1,6 +1,7 @@
 //! `AdamW`: Loshchilov and Hutter, "Decoupled weight decay regularization", ICLR 2019, algorithm 2.
 
-/// Memories of the mean gradient and of its mean square, and what keeps the division finite; the paper's values.
+/// Decay rates of the mean gradient and of its mean square, and the constant that keeps the division finite: the
+/// paper's values.
 const MEAN: f32 = 0.9;
 const SQUARE: f32 = 0.999;
 const SMALL: f32 = 1e-8;
@@ -18,7 +19,7 @@ impl AdamW {
         Self { weight_decay: weight_decay as f32, mean: vec![0.0; parameters], square: vec![0.0; parameters], steps: 0 }
     }
 
-    /// One step down the gradient at this learning rate.
+    /// Takes one step down the gradient at this learning rate.
     pub(super) fn step(&mut self, learning_rate: f64, gradient: &[f32], parameters: &mut [f32]) {
         self.steps += 1;
         let rate = learning_rate as f32;

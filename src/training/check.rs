@@ -15,21 +15,21 @@ use nima_recording::{
 
 use super::{Evaluation, evaluate};
 
-/// Largest mean absolute error of an axis, N.
+/// Maximum mean absolute error of an axis, N.
 const MAE_N: f64 = 0.20;
-/// Largest mean prediction without contact, N.
+/// Maximum mean prediction without contact, N.
 const FREE_MEAN_N: f64 = 0.05;
-/// Largest share of samples flagged as uncertain.
+/// Maximum fraction of samples flagged as uncertain.
 const DOUBT: f64 = 0.10;
-/// Fewest rows, and fewest of them with and without contact.
+/// Minimum number of rows: in total, and with and without contact.
 const ROWS: usize = 1000;
 const OF_EACH: usize = 150;
 
-/// Judges a model by these data; returns the check to be stored in [`nima_core::tip_force::Origin::check`], and all
+/// Judges a model by these data. Returns the check to be stored in [`nima_core::tip_force::Origin::check`] and all
 /// errors.
 ///
 /// # Errors
-/// [`TipForceError`] if the columns are not those of the model.
+/// [`TipForceError`] if the columns are not the model's.
 pub fn check(estimator: &mut Estimator, data: &DataSet) -> Result<(Check, Evaluation), TipForceError> {
     if data.outputs.len() != 3 || data.contact.is_none() {
         let reason = "a check needs the three forces at the tip and the column \"contact\"".to_owned();
@@ -67,7 +67,7 @@ fn judge(evaluation: &Evaluation, [rows, free]: [usize; 2]) -> (Verdict, String)
     let free_n = part.no_contact.iter().map(|rest| rest.mean.abs()).fold(0.0, f64::max);
     let doubt = part.doubt_share;
     if !evaluation.trained_on.is_empty() {
-        (Verdict::PoorData, "these are the data it was trained on; record anew".to_owned())
+        (Verdict::PoorData, "the model was trained on these data; record new data".to_owned())
     } else if rows < ROWS || free < OF_EACH || rows - free < OF_EACH {
         let touching = rows - free;
         let reason =

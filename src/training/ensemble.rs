@@ -2,9 +2,9 @@
 //!
 //! Early stopping of every member uses held-out data: the folds are whole trajectories or, if there are too few,
 //! contiguous blocks with a gap to the training rows. Each member holds out another fold, so that together they use all
-//! data. The same seed gives the same result: initial weights and the order of rows come from our own generator.
-//! Training takes seconds to minutes, so call it on a background thread; members are trained in parallel on the
-//! available cores.
+//! data. The same seed gives the same result, because initial weights and the order of rows come from our own
+//! generator. Training takes seconds to minutes, so call it on a background thread; members are trained in parallel on
+//! the available cores.
 
 use std::{
     sync::{
@@ -26,7 +26,6 @@ use nima_recording::{
 
 use super::{fit::Fit, folds::Folds};
 
-/// Fewest rows for a training.
 pub const MIN_ROWS: usize = 200;
 
 fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
@@ -52,16 +51,14 @@ fn checked(settings: &TrainingSettings) -> Result<(), TipForceError> {
     Ok(())
 }
 
-/// Progress: one epoch of one member.
+/// Progress after one epoch of one member.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Progress {
-    /// Index of the member, from 0.
+    /// From 0.
     pub member: usize,
-    /// Number of members.
     pub members: usize,
-    /// Number of the epoch, from 1.
+    /// From 1.
     pub epoch: usize,
-    /// Maximum number of epochs.
     pub epochs_max: usize,
     /// Mean square error on the training rows, in units of the outputs' variance.
     pub training_loss: f64,
@@ -69,9 +66,8 @@ pub struct Progress {
     pub validation_loss: f64,
     /// Lowest validation loss so far.
     pub best: f64,
-    /// Time since the training started, s.
+    /// Since the training started, s.
     pub elapsed_s: f64,
-    /// Whether this was the member's last epoch.
     pub finished: bool,
 }
 
@@ -80,7 +76,6 @@ pub struct Progress {
 pub struct Trained {
     pub members: Vec<Member>,
     pub figures: Vec<MemberFigures>,
-    /// Conversion of inputs to features.
     pub expansion: Expansion,
     pub features: Normalisation,
     pub outputs: Normalisation,
@@ -88,11 +83,10 @@ pub struct Trained {
     pub constant: Vec<String>,
     /// Training rows and held-out rows of each fold.
     pub(super) folds: Vec<(Vec<usize>, Vec<usize>)>,
-    /// Duration of the training, s.
     pub elapsed_s: f64,
 }
 
-/// Normalised features of all rows, row by row.
+/// Returns the normalised features of all rows, row by row.
 pub(super) fn features_of(data: &DataSet, expansion: &Expansion) -> Vec<f32> {
     let width = expansion.width();
     let mut features = vec![0.0; data.rows() * width];
@@ -102,8 +96,8 @@ pub(super) fn features_of(data: &DataSet, expansion: &Expansion) -> Vec<f32> {
     features
 }
 
-/// Trains an ensemble. Setting `cancel` stops it within one mini-batch; `progress` is called after every epoch, from
-/// the thread that ran it, never from two threads at once.
+/// Trains an ensemble. Setting `cancel` stops it within one mini-batch. `progress` is called after every epoch from the
+/// thread that ran it, never from two threads at once.
 ///
 /// # Errors
 /// [`TipForceError`] if the settings or data are unusable, the loss diverges, or the training is cancelled.
@@ -172,7 +166,8 @@ pub fn train(
     })
 }
 
-/// With a frozen sensor the network would see only the pose and no force, and its wrong predictions would look certain.
+/// Trained with a frozen sensor, the network would see only the pose and no force, and its wrong predictions would look
+/// certain.
 fn nothing_to_learn_from(inputs: &[String], constant: &[String], width: usize) -> Option<String> {
     let cure = "check that the sensors send new readings, and record again";
     let mut forces = inputs.iter().filter(|name| DEFAULT_INPUTS[..3].contains(&name.as_str())).peekable();
@@ -182,7 +177,7 @@ fn nothing_to_learn_from(inputs: &[String], constant: &[String], width: usize) -
     (constant.len() == width).then(|| format!("no input changes over the whole data set; {cure}"))
 }
 
-/// Trains the members on as many threads as there are cores; the first error ends all of them.
+/// Trains the members on as many threads as there are cores; the first error ends them all.
 fn all_members(fit: &Fit<'_>, folds: &Folds) -> Result<Vec<(Member, MemberFigures)>, TipForceError> {
     let count = fit.settings.members;
     let workers = thread::available_parallelism().map_or(1, usize::from).min(count);
@@ -264,7 +259,7 @@ pub fn train_model(
         }
     }
     let measured = trained.expansion.measured();
-    // If every trajectory is a file of its own, each held-out fold is a different session.
+    // If every trajectory is its own file, each held-out fold is a different session.
     let whole_sessions = data.files.len() > 1 && data.trajectories.len() == data.files.len();
     let doubt = Doubt::fit(&x, width, measured, &trained.folds, spreads, whole_sessions, settings.seed);
     let origin = Origin {

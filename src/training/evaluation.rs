@@ -12,19 +12,15 @@ use serde::Serialize;
 /// Errors of one output, in its unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Stats {
-    /// Mean absolute error.
     pub mae: f64,
-    /// Standard deviation of the error about its mean.
     pub sd: f64,
     /// Half width of the interval around zero that contains 95 % of the errors.
     pub band95: f64,
     /// Coefficient of determination; 0 if the output is constant.
     pub r2: f64,
-    /// Number of rows.
     pub n: usize,
 }
 
-/// Errors of one method.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MethodFigures {
     /// `network`, or one of [`BASELINES`].
@@ -37,19 +33,18 @@ pub struct MethodFigures {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct NoContact {
     pub mean: f64,
-    /// Standard deviation of the predictions.
     pub sd: f64,
     pub n: usize,
 }
 
-/// Errors on some of the rows.
+/// Errors on a subset of the rows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
     /// The file, or `all`.
     pub name: String,
     /// The network first, then [`BASELINES`].
     pub methods: Vec<MethodFigures>,
-    /// Share of rows flagged as uncertain.
+    /// Fraction of rows flagged as uncertain.
     pub doubt_share: f64,
     /// Per output, for rows without contact; empty if the data have no column `contact`.
     pub no_contact: Vec<NoContact>,
@@ -62,22 +57,21 @@ pub struct Evaluation {
     pub outputs: Vec<String>,
     pub files: Vec<Part>,
     pub overall: Part,
-    /// Those of these files that the model was trained on: their errors say nothing about new data.
+    /// The files among these that the model was trained on: their errors say nothing about new data.
     pub trained_on: Vec<String>,
     /// Time of one prediction, microseconds.
     pub inference_us: Quantiles,
     /// Predictions, row by row.
     #[serde(skip)]
     pub predictions: Vec<f32>,
-    /// Rows flagged as uncertain.
     #[serde(skip)]
     pub in_doubt: Vec<bool>,
 }
 
-/// Evaluates a model on these rows.
+/// Evaluates a model on all rows.
 ///
 /// # Errors
-/// [`TipForceError`] if the columns are not those of the model (see
+/// [`TipForceError`] if the columns are not the model's (see
 /// [`Selection::of`](nima_recording::tip_force::Selection::of)).
 pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation, TipForceError> {
     if data.inputs != estimator.model().inputs || data.outputs != estimator.model().outputs {
@@ -125,7 +119,7 @@ pub fn evaluate(estimator: &mut Estimator, data: &DataSet) -> Result<Evaluation,
     })
 }
 
-/// The files of this data set that are among those with these hashes.
+/// Returns the files of this data set whose hashes are in the list.
 fn trained_on(data: &DataSet, hashes: &[String]) -> Vec<String> {
     let files = data.files.iter().zip(&data.hashes);
     files.filter(|(_, hash)| hashes.contains(hash)).map(|(path, _)| path.display().to_string()).collect()

@@ -12,12 +12,12 @@ use super::{
     perceptron::{Batch, Perceptron},
 };
 
-/// A member stops after this share of the maximum epochs without a lower validation loss.
+/// A member stops after this fraction of the maximum epochs without a lower validation loss.
 const PATIENCE: f64 = 0.25;
 /// Number of rows evaluated at once in a validation pass.
 const CHUNK: usize = 1024;
 
-/// Data common to all members: normalised features and outputs, row by row, and their numbers of columns.
+/// Data common to all members: normalised features and outputs, row by row, and their column counts.
 pub(super) struct Fit<'a> {
     pub(super) x: &'a [f32],
     pub(super) y: &'a [f32],
@@ -81,8 +81,8 @@ impl Fit<'_> {
         Ok((best.member().ok_or(TipForceError::Shapes)?, figures))
     }
 
-    /// One epoch over the rows in this order; returns the mean loss. `[from, length]` is its position within the whole
-    /// training.
+    /// Runs one epoch over the rows in this order and returns the mean loss. `[from, length]` is its position within
+    /// the whole training.
     fn epoch(
         &self,
         network: &mut Perceptron,

@@ -12,7 +12,6 @@ const GAP: usize = 50;
 /// on them rewards a network that generalises beyond the loads of its training rows.
 const FEW: usize = 3;
 
-/// Assignment of blocks to folds.
 #[derive(Clone, Debug)]
 pub(super) struct Folds {
     blocks: Vec<Range<usize>>,
@@ -22,8 +21,8 @@ pub(super) struct Folds {
 }
 
 impl Folds {
-    /// Five folds, or one per member if there are more members: of whole trajectories (at most as many folds as these),
-    /// or of blocks if there are few trajectories.
+    /// Makes five folds, or one per member if there are more members. They consist of whole trajectories (at most as
+    /// many folds as trajectories), or of blocks if there are few trajectories.
     pub(super) fn of(data: &DataSet, members: usize, seed: u64) -> Self {
         let count = members.max(5);
         let whole: Vec<Range<usize>> = data.trajectories.iter().map(|trajectory| trajectory.rows.clone()).collect();
@@ -43,12 +42,11 @@ impl Folds {
         Self { blocks, fold, gap }
     }
 
-    /// Number of folds.
     pub(super) fn count(&self) -> usize {
         self.fold.iter().max().map_or(0, |last| last + 1)
     }
 
-    /// Training rows and held-out rows for a member.
+    /// Returns the training rows and held-out rows of a member.
     pub(super) fn split(&self, member: usize) -> (Vec<usize>, Vec<usize>) {
         let mut training = Vec::new();
         let mut validation = Vec::new();

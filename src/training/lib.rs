@@ -1,7 +1,7 @@
 //! Training and evaluation of the network that estimates the force at the tip.
 //!
-//! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. For a
-//! background thread; nothing here runs in the loop.
+//! Takes a data set; returns a [`Model`](nima_core::tip_force::Model) and its errors on held-out rows. Runs on a
+//! background thread, never in the loop.
 
 mod adamw;
 mod check;

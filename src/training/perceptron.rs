@@ -1,19 +1,20 @@
-//! A member while it is trained: its loss on a batch, and the gradient of that by back-propagation.
+//! A member during training: its loss on a batch, and the gradient of the loss by back-propagation.
 //!
-//! The function is that of the inference (`nima_core::tip_force::Network`): activation `a(z) = z / sqrt(1 + z^2)`, whose slope is
-//! `(1 + z^2)^(-3/2)`. A batch has one column per row of the data, so that every product is one of matrices.
+//! The function is the one used for inference (`nima_core::tip_force::Network`): activation `a(z) = z / sqrt(1 + z^2)`,
+//! whose slope is `(1 + z^2)^(-3/2)`. A batch has one column per row of the data, so that every product is a matrix
+//! product.
 
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DMatrixView};
 use nima_core::tip_force::{Layer, Member};
 
-/// Layers with the linear path beside them, which is not trained: outside the training data only it remains.
+/// Layers in parallel to a linear path, which is not trained. Outside the training data only the linear path remains.
 #[derive(Clone, Debug)]
 pub(super) struct Perceptron {
-    /// Numbers of inputs, of every hidden layer, of outputs.
+    /// Number of inputs, sizes of the hidden layers, number of outputs.
     widths: Vec<usize>,
-    /// Layer by layer the weights, input by input, then the bias.
+    /// For each layer the weights, input by input, then the bias.
     parameters: Vec<f32>,
     skip: DMatrix<f32>,
 }
@@ -24,15 +25,15 @@ pub(super) struct Batch {
     pub(super) y: DMatrix<f32>,
 }
 
-/// What a hidden layer gave, and the slope of its activation there.
+/// Outputs of a hidden layer, and the slope of its activation there.
 struct Hidden {
     output: DMatrix<f32>,
     slope: DMatrix<f32>,
 }
 
 impl Perceptron {
-    /// Uniform initial weights of variance one over the number of inputs. The last layer starts at zero, so that the initial
-    /// model is the linear path (`skip`: input by input).
+    /// Uniform initial weights with a variance of one over the number of inputs. The last layer starts at zero, so that
+    /// the initial model is the linear path (`skip`: input by input).
     pub(super) fn new(
         (inputs, outputs): (usize, usize),
         hidden: &[usize],
@@ -57,7 +58,7 @@ impl Perceptron {
         self.widths.len() - 1
     }
 
-    /// Where a layer's weights and its bias are among the parameters.
+    /// Ranges of a layer's weights and bias within the parameters.
     fn places(&self, layer: usize) -> [Range<usize>; 2] {
         let from: usize = self.widths.windows(2).take(layer).map(|pair| (pair[0] + 1) * pair[1]).sum();
         let bias = from + self.widths[layer] * self.widths[layer + 1];
@@ -101,12 +102,12 @@ impl Perceptron {
         (hidden, output)
     }
 
-    /// Mean square error on a batch.
+    /// Returns the mean square error on a batch.
     pub(super) fn loss(&self, batch: &Batch) -> f64 {
         mean_square(&(self.forward(&batch.x).1 - &batch.y))
     }
 
-    /// Mean square error on a batch; writes its derivatives by the parameters.
+    /// Returns the mean square error on a batch and writes its gradient.
     pub(super) fn gradient(&self, batch: &Batch, gradient: &mut Vec<f32>) -> f64 {
         let (hidden, output) = self.forward(&batch.x);
         let error = output - &batch.y;
@@ -126,7 +127,8 @@ impl Perceptron {
         loss
     }
 
-    /// The present weights in the form used for inference; `None` if a width is zero or there are more outputs than it has room for.
+    /// Returns the current weights in the form used for inference; `None` if a width is zero or there are more outputs
+    /// than that form can hold.
     pub(super) fn member(&self) -> Option<Member> {
         let layer = |k: usize| {
             let [weights, bias] = self.places(k).map(|place| &self.parameters[place]);
@@ -154,7 +156,7 @@ mod tests {
         let skip = draw(2, 5);
         let batch = Batch { x: draw(5, 40), y: draw(2, 40) };
         let mut network = Perceptron::new((5, 2), &[7, 4], skip.as_slice(), &mut fastrand::Rng::with_seed(2));
-        // The last layer starts at zero; away from there every layer has a gradient.
+        // The last layer starts at zero, where the other layers have no gradient; so start elsewhere.
         let start = draw(network.parameters.len(), 1);
         network.parameters.copy_from_slice(start.as_slice());
         let mut gradient = Vec::new();

@@ -116,7 +116,7 @@ fn a_wrong_file_is_refused_in_one_line_and_never_read_as_a_model() {
     assert!(refused(&swapped("nima tip force 2", "nima tip force 9")).contains("this version reads"));
     assert!(refused(&swapped("doubt.centres", "doubt.central")).contains("doubt.centres is absent"));
     assert!(refused(&swapped("\"nima\"", "\"nina\"")).contains("metadata"));
-    // A key that may be left out is not taken for one that is.
+    // A misspelled optional key must not be ignored.
     assert!(refused(&swapped("epochs", "epocks")).contains("unknown field `epocks`"));
     let mut poisoned = good.clone();
     let end = poisoned.len();
@@ -179,7 +179,7 @@ fn inputs_that_never_change_are_refused() {
     assert!(refusal(&|x| x.fill(0.0)).is_some_and(|told| told.contains(words)));
     assert!(refusal(&|x| (x[0], x[1]) = (1.3, -2.1)).is_some_and(|told| told.contains(words)), "both forces hang");
     assert_eq!(refusal(&|x| x[0] = 0.0), None, "one axis may be unused");
-    // Columns with other names are not known to be forces; but something must change in the data.
+    // Columns with other names are not known to be forces; but something in the data must change.
     let mut data = world(12, 5);
     data.inputs = ["a", "b", "c"].map(str::to_owned).to_vec();
     data.x.fill(1.0);

@@ -14,7 +14,7 @@ thread_local! {
 }
 
 fn count() {
-    // A thread that is ending has no counter any more; its allocations do not matter.
+    // The counter of an ending thread no longer exists; its allocations do not matter.
     let _ = CALLS.try_with(|calls| calls.set(calls.get() + 1));
 }
 
@@ -22,19 +22,19 @@ fn count() {
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: guaranteed by the caller of this function.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         count();
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: guaranteed by the caller of this function.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
         count();
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: guaranteed by the caller of this function.
         unsafe { System.realloc(pointer, layout, new_size) }
     }
 }
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Number of allocations, releases and changes of size by this thread so far.
+/// Number of allocations, releases and resizes by this thread so far.
 pub(crate) fn calls() -> u64 {
     CALLS.get()
 }

@@ -1,4 +1,4 @@
-//! Reading all devices of a rig, and summing up what they deliver, allocates nothing.
+//! Reading all devices of a rig, and summarising their data, allocates nothing.
 #![cfg(target_os = "linux")]
 
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! Talking with the program of an external device over a real socket allocates nothing.
+//! Communication with the program of an external device over a real socket allocates nothing.
 
 use std::{
     net::UdpSocket,
@@ -21,13 +21,13 @@ use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 
-/// What the program does.
+/// Modes of the program.
 const SENDS: u8 = 0;
 const SENDS_NONSENSE: u8 = 1;
 const FLOODS: u8 = 2;
 const ENDS: u8 = 3;
 
-/// A program that sends a thousand times a second until it is told to do otherwise.
+/// A program that sends a thousand times per second until its mode changes.
 fn program(port: u16, does: &AtomicU8) {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.connect(("127.0.0.1", port)).unwrap();
@@ -80,7 +80,7 @@ fn polling_and_answering_allocate_nothing_also_when_the_program_floods_and_ends(
             assert!(health.readings > 100 && health.damaged > 10, "{health:?}");
             assert!(matches!(health.standing, Standing::Lost(_)));
         };
-        // The thread ends whatever comes of it.
+        // The thread must end in any case.
         let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| judge(opened.unwrap())));
         does.store(ENDS, Relaxed);
         thread.join().unwrap();

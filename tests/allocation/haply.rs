@@ -21,7 +21,7 @@ use nima_testing::real_time::alone;
 
 use crate::counting::calls;
 
-/// What the handle does.
+/// Modes of the handle.
 const ANSWERS: u8 = 0;
 const ANSWERS_NONSENSE: u8 = 1;
 const IS_SILENT: u8 = 2;

@@ -1,4 +1,4 @@
-//! The computation from the hand's pose to the arm's joint angles allocates nothing.
+//! Computing the arm's joint angles from the hand's pose allocates nothing.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::kinematics::{

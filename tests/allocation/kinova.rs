@@ -16,7 +16,7 @@ use nima_testing::real_time::{alone, judged};
 
 use crate::counting::calls;
 
-/// Polls once a millisecond; returns the number of allocations.
+/// Polls once per millisecond; returns the number of allocations.
 fn allocations(driver: &mut Driver, now_s: &mut f64, ticks: u32, mut command: impl FnMut(&mut Driver)) -> u64 {
     let mut count = 0;
     for _ in 0..ticks {

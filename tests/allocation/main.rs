@@ -1,4 +1,4 @@
-//! Code that runs in a tick allocates nothing.
+//! Code that runs in a tick must not allocate.
 //!
 //! The counter counts per thread, but tests with real connections must not wait for a processor core, so each test
 //! holds `alone`.

@@ -1,5 +1,5 @@
-//! Both ends of a link between two machines allocate nothing once their session is open: neither while payloads pass, nor while strangers
-//! knock, another console comes and goes, or the other side is silent.
+//! Both ends of a link between two machines allocate nothing once their session is open: neither while payloads pass,
+//! nor while unknown programs send datagrams, another console comes and goes, or the other side is silent.
 
 use std::{
     net::{Ipv4Addr, SocketAddr, UdpSocket},
@@ -21,7 +21,7 @@ fn console(keys: &Keys, follower: SocketAddr, key: PublicKey) -> Endpoint {
     Endpoint::open(Config::new(Role::Console { follower, key }, keys.clone())).unwrap()
 }
 
-/// One tick: what is due is taken, a payload is sent.
+/// Runs one tick: takes the due payloads and sends one.
 fn tick(end: &mut Endpoint, now_s: f64) -> usize {
     let mut received = end.poll(now_s);
     let mut got = 0;
@@ -53,7 +53,7 @@ fn a_tick_of_an_open_link_allocates_nothing() {
             sleep(TICK);
         }
         scope(|scope| {
-            // Another console comes and goes; strangers send what is no datagram of ours.
+            // Another console comes and goes; unknown programs send foreign datagrams.
             scope.spawn(|| {
                 let mut other = console(&others, address, theirs.public());
                 let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
@@ -68,7 +68,7 @@ fn a_tick_of_an_open_link_allocates_nothing() {
             let mut got = 0;
             for count in 0..1500 {
                 got += tick(&mut near, now_s());
-                // It stands still for a quarter of a second.
+                // It stops for a quarter of a second.
                 if !(1000..1250).contains(&count) {
                     got += tick(&mut far, now_s());
                 }

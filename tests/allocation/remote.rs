@@ -1,4 +1,4 @@
-//! A tick of either of two machines allocates nothing: messages are packed, sent, received and taken apart in place.
+//! A tick of either of two machines allocates nothing: messages are packed, sent, received and unpacked in place.
 
 use std::sync::Mutex;
 
@@ -15,7 +15,7 @@ use nima_testing::real_time::alone;
 
 use crate::counting::calls;
 
-/// The newest message of each way.
+/// The newest message in each direction.
 struct Slot(Mutex<([u8; MESSAGE_MAX], usize)>);
 
 impl Slot {
@@ -26,7 +26,7 @@ impl Slot {
 
 static WAYS: [Slot; 2] = [Slot::empty(), Slot::empty()];
 
-/// One end: its number.
+/// One end, with its number.
 struct InPlace(usize);
 
 impl Wire for InPlace {

@@ -1,4 +1,4 @@
-//! A tick of a hand that looks for lumps, and of one that leads a loop along a wire.
+//! A tick of a hand that looks for lumps, and of one that leads a loop along a wire, allocates nothing.
 
 use nima_core::task::Event;
 use nima_machine::rig::{Outputs, Rig as _, SIDES, Sensed, Side};

@@ -30,7 +30,7 @@ fn sample(k: u32) -> Sample {
     sample
 }
 
-/// Three seconds of both ends: the delay changes, modes are left out and come back, all begins anew.
+/// Three seconds of both ends: the delay changes, modes are disabled and enabled, everything is reset.
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn run_both_ends(settings: &Settings, words: &str) {
     let mut identifier = Identifier::new(settings).unwrap();
@@ -89,7 +89,7 @@ fn a_tick_of_the_whole_loop_and_of_the_simulation_allocates_nothing() {
     let rig = RigConfig::load("simulated").unwrap();
     let mut control = Loop::new(&rig, &[Some(Calibrations::default()), Some(Calibrations::default())]).unwrap();
     let mut world = Worlds::new(&Scene::load("bimanual").unwrap(), rig.rate_hz);
-    // Its other end is read for a while, then forgotten, then gone: nothing of that may cost a tick an allocation.
+    // Its other end is read for a while, then neglected, then dropped: none of this may cause an allocation in a tick.
     let (mut tap, end) = tap();
     let mut end = Some(end);
     control.obey(Command::Engage, 0.0);

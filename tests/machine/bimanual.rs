@@ -128,7 +128,7 @@ fn a_refused_engagement_says_why_and_one_arm_that_obeys_does_not_hide_the_other(
     assert_eq!(bench.states(), [LoopState::Engaged, LoopState::Idle]);
     bench.run(5, AS_IT_IS);
     bench.obey(Command::Engage);
-    assert_eq!(bench.refusals(), [], "that the right arm is engaged already is no news");
+    assert_eq!(bench.refusals(), [], "the right arm is engaged already, so there is no event");
     bench.run(100, |side, inputs| (side == Side::Left).then_some(inputs));
     let [right, left] = bench.states();
     assert_eq!((right, left), (LoopState::Faulted(Fault::SourceSilent), LoopState::Faulted(Fault::OtherArm)));
@@ -368,5 +368,5 @@ fn a_handle_that_is_let_go_is_an_absent_hand_and_nothing_resumes() {
             return;
         }
     }
-    panic!("nobody noticed that the hand had gone");
+    panic!("the release of the handle was not detected");
 }

@@ -1,4 +1,4 @@
-//! What true contacts do to the force at a tip from sample to sample, and what the loop makes of it.
+//! Effects of real contacts on the force at a tip from sample to sample, and the loop's response.
 
 use std::sync::{Arc, Mutex};
 
@@ -11,10 +11,10 @@ use nima_machine::{
 };
 use nima_tests::plan;
 
-/// Force at the tip, N, and where that is, m.
+/// Force at the tip, N, and its position, m.
 type Sample = (Vector3<f64>, Vector3<f64>);
 
-/// Keeps what a rig measured.
+/// Stores a rig's measurements.
 struct Keeper {
     rig: Box<dyn Rig>,
     kept: Arc<Mutex<[Vec<Sample>; SIDES]>>,
@@ -37,14 +37,14 @@ impl Rig for Keeper {
     }
 }
 
-/// How a run ended, and what was measured in it.
+/// How a run ended, and its measurements.
 struct Ran {
     seconds: f64,
     fault: Option<Fault>,
     samples: [Vec<Sample>; SIDES],
 }
 
-/// Two hands that feel nothing, with a pace and a tremor of their own, or the one hand of another scene.
+/// Two hands without force perception, with their own pace and tremor, or the single hand of another scene.
 fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds: f64) -> Ran {
     let mut plan = plan(scene);
     plan.rig.mode = mode;
@@ -70,7 +70,8 @@ fn run(scene: &str, (mode, gain, delay_s): (Mode, f64, f64), seed: u64, seconds:
     Ran { seconds: summary.seconds, fault, samples }
 }
 
-/// Where the force changes faster than by half a newton and 5 N for each millimetre of the tip's way: by how much, and the sizes around it, N.
+/// Returns where the force changes by more than half a newton plus 5 N for each millimetre of the tip's travel: the
+/// change, and the forces around it, N.
 fn leaps(samples: &[Sample]) -> Vec<(usize, Vec<f64>)> {
     let way_m = |k: usize| (samples[k].1 - samples[k - 1].1).norm();
     let mut found: Vec<(usize, Vec<f64>)> = Vec::new();

@@ -21,12 +21,12 @@ const INPUTS: [&str; 5] = [
 /// Largest mean absolute error on each held-out file, Nm.
 const GOAL_NM: f64 = 2.5e-3;
 
-/// `None`, reported, where they are absent.
+/// `None`, with a report, if they are missing.
 fn paths<'a>(files: impl Iterator<Item = &'a str>) -> Option<Vec<PathBuf>> {
     files.map(|file| unjudged::recording(&format!("mrd_davinci/maryland_r5_{file}.csv"))).collect()
 }
 
-/// Trained on the other four files, evaluated on these two; `None`, reported, where the recordings are absent.
+/// Trained on the other four files, evaluated on these two; `None`, with a report, if the recordings are missing.
 fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Option<Evaluation> {
     let names = |list: &[&str]| Some(list.iter().map(|name| (*name).to_owned()).collect());
     let selection = Selection { inputs: names(&INPUTS), outputs: names(&["jaw_torque_nm"]) };
@@ -38,7 +38,7 @@ fn held_out(held: [&str; 2], settings: &TrainingSettings) -> Option<Evaluation> 
     Some(evaluate(&mut estimator, &data).unwrap())
 }
 
-/// Mean absolute error (Nm) of the network and of linear regression, and share of uncertain samples, per file.
+/// Mean absolute error (Nm) of the network and of linear regression, and fraction of uncertain samples, per file.
 fn figures(evaluation: &Evaluation) -> Vec<[f64; 3]> {
     let mae = |file: &nima_training::Part, method: usize| file.methods[method].outputs[0].unwrap().mae;
     evaluation.files.iter().map(|file| [mae(file, 0), mae(file, 2), file.doubt_share]).collect()
@@ -55,7 +55,7 @@ fn unseen_recordings_meet_the_goal_within_the_trained_loads_and_below_them_and_d
 }
 
 #[test]
-#[ignore = "takes minutes, prints the table of docs/calibration.md: `./dev figures` runs it"]
+#[ignore = "takes minutes, prints the table of docs/results/calibration.md: `./dev figures` runs it"]
 fn all_fifteen_splits_with_the_default_settings() {
     for (first, a) in FILES.into_iter().enumerate() {
         for b in FILES.into_iter().skip(first + 1) {

@@ -1,10 +1,10 @@
-//! A simulated person who feels: forces and pace depend on what the loop renders.
+//! A simulated person with force perception: forces and pace depend on the loop's rendering.
 
 use nima_core::{impedance::Mode, task::Event};
 use nima_machine::{messages::LoopState, rig::Side, runtime};
 use nima_tests::plan;
 
-/// Force at the tip while it presses on the tissue, N: its peak, its mean; and how often it pressed in half a minute.
+/// Force at the tip while it presses on the tissue, N: its peak, its mean; and the number of presses in half a minute.
 fn pressed(gain: f64, intended_n: Option<f64>) -> (f64, f64, u32) {
     let mut plan = plan("peg_transfer");
     plan.rig.mode = Mode::Matched;
@@ -36,7 +36,7 @@ fn with_force_a_person_presses_less_and_is_slower_and_without_it_feeling_is_no_m
     let [felt, blind, without] = [pressed(1.0, Some(1.0)), pressed(1.0, None), pressed(0.0, Some(1.0))];
     println!("felt {felt:?}, blind {blind:?}, without force {without:?}");
     assert_eq!(without, pressed(0.0, None));
-    // The peak is over before anybody can react; that it is less than without force comes from the hand's impedance alone.
+    // The peak is over within the reaction time; it is lower than without force only because of the hand's impedance.
     assert!(felt.1 < 0.95 * blind.1, "the mean falls: {felt:?}, {blind:?}");
     assert!(felt.0 < 0.75 * without.0 && felt.1 < 0.67 * without.1, "{felt:?}, {without:?}");
     assert!(felt.2 < blind.2 && blind.2 == without.2, "slower where more is felt: {felt:?}, {blind:?}, {without:?}");

@@ -1,4 +1,5 @@
-//! One person leads two instruments from the screen, one at a time: a ring goes from hand to hand, over to the other side and back.
+//! One person leads two instruments from the screen, one at a time: a ring is passed from hand to hand, over to the
+//! other side and back.
 
 use nalgebra::Vector3;
 use nima_core::{impedance::Mode, task::Event};
@@ -9,15 +10,15 @@ use nima_machine::{
 };
 use nima_tests::plan;
 
-/// As far as a led hand goes in a second, m, and how long it is waited for then, s.
+/// Distance that a led hand moves per second, m, and pause after that, s.
 const LED_M_S: f64 = 0.15;
 const SETTLES_S: f64 = 0.2;
 const OPEN_RAD: f64 = 0.6;
-/// Height of a ring that is carried, and of one that is let go over a peg, m.
+/// Height of a carried ring, and of one that is released over a peg, m.
 const CARRIED_M: f64 = 0.037;
 const LET_GO_M: f64 = 0.016;
 
-/// What is sent to the loop and when, s.
+/// Commands to the loop, and their times, s.
 struct Script {
     t_s: f64,
     commands: Vec<(f64, Command)>,
@@ -27,7 +28,7 @@ struct Script {
 /// From the middle of a ring to the middle of its tube, m.
 const RIM_M: f64 = 0.00725;
 
-/// Where the tip is at the outer rim of a ring with its middle here, seen from the hand's own side.
+/// Position of the tip at the outer rim of a ring with this middle, on the hand's own side.
 fn rim_m(side: Side, [x, y]: [f64; 2], height_m: f64) -> Vector3<f64> {
     let out_m = if side == Side::Left { -RIM_M } else { RIM_M };
     Vector3::new(x + out_m, y, height_m - 0.001)
@@ -60,7 +61,7 @@ impl Script {
         self.t_s += 0.3;
     }
 
-    /// A ring from this peg to that one; when the taker alone holds it, and until when it is carried, s.
+    /// Moves a ring from this peg to that one; returns when only the taker holds it, and until when it is carried, s.
     fn over(&mut self, giver: Side, from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
         let taker = giver.other();
         let middle = [0.0, 0.0];
@@ -86,7 +87,7 @@ impl Script {
     }
 }
 
-/// What happened to the rings while this was sent, and how far the left tip went in this time, m.
+/// Returns the events of the rings during these commands, and the distance that the left tip moved in this time, m.
 fn played(script: &Script, while_s: [f64; 2]) -> (Vec<Event>, f64) {
     let mut plan = plan("rings");
     plan.rig.mode = Mode::Matched;

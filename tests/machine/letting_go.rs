@@ -1,4 +1,4 @@
-//! A simulated hand that lets go on command, as the demonstration shows it.
+//! A simulated hand that releases the handle on command, as in the demonstration.
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -10,8 +10,8 @@ use nima_machine::{
 use nima_simulation::run_virtual;
 use nima_tests::plan;
 
-/// Direct reflection at 300 ms, let go while pressing; the farthest place of the handle while engaged (m), and the states that
-/// followed. The hand takes the handle again after 2.5 s, and the loop is asked to engage.
+/// Direct reflection at 300 ms, released while pressing. Returns the farthest position of the handle while engaged (m),
+/// and the states that followed. The hand grasps the handle again after 2.5 s, and the loop is commanded to engage.
 fn let_go(governor: bool) -> (f64, Vec<LoopState>) {
     let mut plan = plan("peg_transfer");
     plan.rig.mode = Mode::Dfr;
@@ -58,7 +58,7 @@ fn reflection_kicks_the_handle_away_and_the_governor_holds_it() {
     println!("with the governor {:.2} mm, {states:?}", 1e3 * held_m);
     assert!(held_m < 0.005, "{held_m} m");
     assert_eq!(states.first(), Some(&LoopState::Engaged));
-    assert!(states.contains(&LoopState::Idle), "nobody holds the handle: {states:?}");
+    assert!(states.contains(&LoopState::Idle), "no hand holds the handle: {states:?}");
     assert_eq!(states.last(), Some(&LoopState::Engaged), "engaged again by a command, with the hand back: {states:?}");
 }
 

@@ -1,4 +1,4 @@
-//! Two whole loops, one with the handle and one with the arm, and nothing but messages between them.
+//! Two whole loops, one with the handle and one with the arm, connected only by messages.
 use std::{
     cell::RefCell,
     collections::VecDeque,
@@ -18,10 +18,10 @@ use nima_machine::{
 use nima_simulation::{Worlds, run_virtual, scene::Scene};
 use nima_tests::plan;
 
-/// Messages under way in one direction, with the time at which they arrive, s.
+/// Messages in transit in one direction, with their arrival times, s.
 type Way = Arc<Mutex<VecDeque<(f64, Vec<u8>)>>>;
 
-/// A wire with a constant delay; `ahead_s` is how far this end's clock is ahead of the other's.
+/// A link with a constant delay; `ahead_s` is how far this end's clock is ahead of the other's.
 struct Constant {
     out: Way,
     back: Way,
@@ -67,7 +67,6 @@ impl<R: Rig> Machine<R> {
     }
 }
 
-/// Both machines, on one virtual clock.
 struct Bench {
     leader: Machine<FarFollower<Worlds, Constant>>,
     follower: Machine<FarLeader<Worlds, Constant>>,
@@ -76,7 +75,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// With this delay each way, s; the clocks are half an hour apart.
+    /// With this delay in each direction, s; the clocks are half an hour apart.
     fn new(delay_s: f64, mode: Mode) -> Self {
         let mut rig = RigConfig::load("simulated").unwrap();
         rig.mode = mode;
@@ -133,7 +132,7 @@ impl Bench {
         [self.leader.state(), self.follower.state()]
     }
 
-    /// Where the tip is.
+    /// Position of the tip.
     fn tip_m(&self) -> Vector3<f64> {
         self.follower.rig.measured()[0].unwrap().tip_m
     }
@@ -147,12 +146,12 @@ fn rms_n(errors: &[f64]) -> f64 {
     (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-/// What is judged begins when both have learnt: in the first seconds *best* trusts matched the less, the longer the delay (rms from the fourth
-/// second on, 72 ms each way: 0.103 N apart, 0.082 N in one place).
+/// Judging begins when both have learnt: in the first seconds *best* trusts matched the less, the longer the delay (rms
+/// from the fourth second on, 72 ms in each direction: 0.103 N apart, 0.082 N in one place).
 const FROM_MS: usize = 12_000;
 
-/// Rms error of the force at the hand, N, against the force at the tip when the follower has the present command, and the largest
-/// force.
+/// Rms error of the force at the hand, N, compared with the force at the tip when the follower has the current command,
+/// and the maximum force.
 fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
     let mut bench = Bench::engaged(delay_s, mode);
     let mut felt_n = Vec::new();
@@ -170,7 +169,7 @@ fn over_a_network(delay_s: f64, mode: Mode) -> [f64; 2] {
     [rms_n(&errors), tip_n.iter().map(Vector3::norm).fold(0.0, f64::max)]
 }
 
-/// The same with everything in one place and the whole delay on the way back.
+/// The same with everything in one place and the whole delay in the return direction.
 fn in_one_place(delay_s: f64, mode: Mode) -> f64 {
     let mut plan = plan("peg_transfer");
     plan.rig.mode = mode;
@@ -268,7 +267,7 @@ fn another_console_that_has_released_more_stops_releases_none_here() {
     let wire = bench.leader.rig.wire();
     other.rig.wire_mut().out = wire.out.clone();
     other.rig.wire_mut().back = wire.back.clone();
-    // Its loop has run longer, and has seen a stop and a release that nobody heard of here.
+    // Its loop has run longer, and has seen a stop and a release that are unknown here.
     other.ahead_s = 500.0;
     other.rig.wire_mut().ahead_s = 500.0;
     other.rig.wire_mut().is_cut = Arc::new(Mutex::new(true));
@@ -291,7 +290,7 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
         waited += 1;
     }
     bench.cut(true);
-    // What is under way still arrives.
+    // Messages in transit still arrive.
     bench.run(20);
     let before_m = bench.tip_m();
     bench.run(21);
@@ -299,7 +298,7 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
     bench.run(200);
     assert_eq!(bench.states(), [LoopState::Faulted(Fault::LinkSilent); 2]);
     let held_m = bench.tip_m();
-    assert!((held_m - before_m).norm() < 0.03, "{held_m:?}: the tip went on");
+    assert!((held_m - before_m).norm() < 0.03, "{held_m:?}: the tip kept moving");
     bench.run(2000);
     assert!((bench.tip_m() - held_m).norm() < 1e-4, "the tip is held");
     bench.cut(false);
@@ -318,7 +317,7 @@ fn a_cut_takes_the_force_within_20_ms_and_what_comes_back_resumes_nothing() {
 fn garbage_and_silence_move_nothing() {
     let mut bench = Bench::engaged(0.01, Mode::Best);
     for ticks in 0..400_usize {
-        // Messages cut and with turned bits, put into both ways.
+        // Truncated messages, and messages with flipped bits, in both directions.
         for way in [&bench.leader.rig.wire().out, &bench.follower.rig.wire().out] {
             let mut way = way.lock().unwrap();
             if let Some((due_s, message)) = way.back().cloned() {

@@ -17,7 +17,6 @@ use nima_simulation::{
     scene::{Flaw, Scene},
 };
 
-/// A simulated rig and its time.
 struct Bench {
     world: World,
     t_s: f64,
@@ -153,7 +152,10 @@ fn a_bias_that_moved_is_noticed_at_the_start_and_one_that_did_not_is_fine() {
         assert!(matches!(found, Drift::Moved { by_n } if (by_n - f64::abs(step_n)).abs() < 0.05), "{found:?}");
     }
     scene.wrist.as_mut().unwrap().force_bias_n.x += 0.03;
-    assert!(matches!(at_rest(&scene, 4.0), Drift::Fine { .. }), "a step within the noise of the model is no drift");
+    assert!(
+        matches!(at_rest(&scene, 4.0), Drift::Fine { .. }),
+        "a step within the noise of the model does not count as drift"
+    );
 }
 
 #[test]

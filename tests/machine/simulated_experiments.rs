@@ -1,4 +1,4 @@
-//! The simulated experiments: the sensors' readings must correspond to what was done.
+//! The simulated experiments: the sensors' readings must correspond to the actions.
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::{GRAVITY_M_S2, WristSample, from_roll_pitch_yaw_deg};
 use nima_machine::{

@@ -1,4 +1,5 @@
-//! The three rings of the workspace: the product names neither what proves it nor an extra, and an extra names no other one in silence.
+//! The three rings of the workspace: the product depends neither on the laboratory nor on an extra, and an extra
+//! depends on another one only if it says so.
 
 use std::{
     collections::BTreeMap,
@@ -7,16 +8,14 @@ use std::{
 
 use toml::{Table, Value};
 
-/// Where a crate belongs, by its folder.
+/// Ring of a crate, by its folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Ring {
-    /// Ring 1.
     Product,
-    /// Ring 2.
     Lab,
     /// Ring 3, by the name of its folder.
     Extra(String),
-    /// The program and the tests across crates, which put the rings together.
+    /// The program and the tests across crates, which combine the rings.
     Around,
 }
 
@@ -39,7 +38,7 @@ fn manifest(folder: &Path) -> Table {
     std::fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
 }
 
-/// What a manifest names anywhere, for tests and for one system too.
+/// Returns all dependencies in a manifest, including those for tests and for single systems.
 fn named(manifest: &Table) -> Vec<String> {
     let mut all = Vec::new();
     for (key, value) in manifest {
@@ -56,11 +55,11 @@ fn named(manifest: &Table) -> Vec<String> {
     all
 }
 
-/// Why this crate must not name that one; `readme` is that of an extra.
+/// Returns why this crate must not depend on that one; `readme` belongs to an extra.
 fn fault(from: &Ring, to: &Ring, readme: &str) -> Option<String> {
     match (from, to) {
         (Ring::Product, Ring::Lab | Ring::Extra(_) | Ring::Around) => Some("the product names another ring".to_owned()),
-        (Ring::Extra(_), Ring::Lab | Ring::Around) => Some("an extra stands on the product alone".to_owned()),
+        (Ring::Extra(_), Ring::Lab | Ring::Around) => Some("an extra depends only on the product".to_owned()),
         (Ring::Extra(_), Ring::Extra(other)) => {
             let says = |line: &str| line.starts_with("| other extras |") && line.contains(&format!("`{other}`: "));
             (!readme.lines().any(says)).then(|| format!("its README does not say why it uses the extra `{other}`"))

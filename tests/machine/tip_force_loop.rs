@@ -34,7 +34,7 @@ fn path(fallback: Option<Fallback>) -> ForcePath {
     ForcePath::new(&Calibrations { gravity: Some(known.gravity), tip_force, ..Calibrations::default() }, 1e-3)
 }
 
-/// The result of a path for each sample, and the true force, N (`world`), during work on the tissue.
+/// Returns the result of a path for each sample, and the true force, N (`world`), during work on the tissue.
 fn work(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vec<(ForceReport, Vector3<f64>)> {
     let mut world = World::new(scene, 1000.0);
     let outputs = Outputs { prompt: Prompt::Work, ..Outputs::SAFE };
@@ -51,7 +51,7 @@ fn scene(seed: u64) -> Scene {
     Experiment::scene("isolation", seed).unwrap()
 }
 
-/// Another tool, which the network was not trained for.
+/// Another tool, for which the network was not trained.
 fn heavier(seed: u64) -> Scene {
     heavier_by(0.5, seed)
 }
@@ -82,14 +82,14 @@ fn friction_of_unknown_direction_is_not_taken_for_tissue_until_the_instrument_ha
     assert_eq!(all[0].0.source, not_moved);
     for (report, _) in all.iter().filter(|(report, _)| report.source == not_moved) {
         assert_eq!(report.tip_n, Vector3::zeros());
-        assert!(report.measured_n().iter().all(|x| x.is_nan()), "nobody measured it");
+        assert!(report.measured_n().iter().all(|x| x.is_nan()), "it was not measured");
     }
     assert!(all.iter().any(|(report, _)| report.source == ForceSource::Network));
 }
 
 #[test]
 fn a_little_outside_its_training_the_network_is_better_than_the_wrist_force() {
-    // 1.2 N of weight that no calibration knows are in both.
+    // Both contain 1.2 N of weight that is unknown to every calibration.
     let scene = heavier_by(0.12, 11);
     let all = work(path(Some(Fallback::WristForce)), &scene, 20.0);
     let share = |source| all.iter().filter(|(report, _)| report.source == source).count() as f64 / all.len() as f64;
@@ -117,7 +117,7 @@ fn another_tool_is_flagged_and_the_chosen_fallback_is_used() {
     let wrist = doubtful(Fallback::WristForce);
     let without = work(path(None), &heavier(11), 10.0);
     let same = wrist.iter().zip(&without[3000..]).filter(|(a, b)| (a.0.tip_n - b.0.tip_n).norm() < 1e-9).count();
-    assert!(same as f64 > 0.9 * wrist.len() as f64, "the wrist force as it is: {same} of {}", wrist.len());
+    assert!(same as f64 > 0.9 * wrist.len() as f64, "the uncorrected wrist force: {same} of {}", wrist.len());
     let faded = doubtful(Fallback::HoldAndFade);
     let silent = faded.iter().filter(|(report, _)| report.tip_n.norm() < 1e-9).count();
     assert!(silent as f64 > 0.9 * faded.len() as f64, "nothing is felt: {silent} of {}", faded.len());
@@ -160,7 +160,7 @@ fn at_the_task(side: Side) -> Scene {
     Scene { wrist, trocar, tissue_sensor, person, ..scene }
 }
 
-/// Standard deviation per axis of the force told without contact while the hand does its task, N (`world`).
+/// Standard deviation per axis of the reported force without contact while the hand performs its task, N (`world`).
 fn free_sd_n(mut path: ForcePath, scene: &Scene, seconds: f64) -> Vector3<f64> {
     let mut world = World::new(&Scene { person: None, ..scene.clone() }, 1000.0);
     let mut outputs = Outputs::SAFE;

@@ -1,4 +1,4 @@
-//! Palpation and the wire in the closed loop: simulated hands, and what a person does from the screen.
+//! Palpation and the wire in the closed loop: simulated hands, and a person's actions on the screen.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -19,7 +19,7 @@ fn of(scene: &str, mode: Mode) -> Plan {
     plan
 }
 
-/// What happens in so many seconds, in which these commands are given at these times, and the bits of what was measured.
+/// Runs this many seconds with these commands at these times; returns the events, and the bits of the measurements.
 fn played(plan: &Plan, seconds: f64, commands: &[(f64, Command)]) -> (Vec<Happening>, Vec<u64>) {
     let (assembly, watched) = plan.watched().unwrap();
     let watched = watched.unwrap();

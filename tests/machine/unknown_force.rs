@@ -1,4 +1,4 @@
-//! A force that is not known is reported as unknown, never as zero, and enters no figure.
+//! An unknown force is reported as unknown, never as zero, and affects no statistics.
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::frames::{Wrench, WristSample};
 use nima_machine::{
@@ -21,7 +21,7 @@ impl Bench {
         Self { control: Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap(), now_ms: 0 }
     }
 
-    /// This many ticks with what `sensed` gives at each time (s); the last one.
+    /// Runs this many ticks with the result of `sensed` at each time (s); returns the last tick.
     fn run(&mut self, ticks: u32, sensed: impl Fn(f64) -> Option<Sensed>) -> Tick {
         let mut last = None;
         for _ in 0..ticks {
@@ -76,7 +76,7 @@ fn before_the_first_sample_and_after_a_silence_no_force_is_known() {
 
     let judged = bench.judged();
     let tick = bench.run(10, |_| None);
-    assert!(tick.known_n().is_some(), "a few lost samples are no silence");
+    assert!(tick.known_n().is_some(), "a few lost samples do not count as silence");
     let tick = bench.run(15, |_| None);
     assert_eq!((tick.force.source, tick.state), (ForceSource::NoSample, LoopState::Disconnected));
     assert!(is_unknown(tick.measured_n) && !is_unknown(tick.delayed_n), "what is under way still arrives");
@@ -85,7 +85,10 @@ fn before_the_first_sample_and_after_a_silence_no_force_is_known() {
     assert_eq!(bench.judged(), judged, "nothing errs from a force that is not known");
 
     let tick = bench.run(10, at_tip);
-    assert!(tick.measured_n == force_n(tick.t_s) && is_unknown(tick.delayed_n), "not what came before the silence");
+    assert!(
+        tick.measured_n == force_n(tick.t_s) && is_unknown(tick.delayed_n),
+        "not the value from before the silence"
+    );
     let tick = bench.run(DELAY_MS, at_tip);
     assert!((tick.delayed_n - force_n(tick.t_s - 0.05)).norm() < 1e-9, "{}", tick.delayed_n);
 }

@@ -103,7 +103,7 @@ fn of_the_baselines_only_the_one_of_the_rig_can_be_chosen() {
         for other in Mode::ALL.into_iter().chain(Mode::BASELINES) {
             let computed = other == mode || !matches!(other, Mode::Baseline(_));
             let expected = if computed { Ok(()) } else { Err(Refusal::OutOfRange) };
-            assert_eq!(pair.obey(Command::SetMode(other), 0.0), expected, "{other} beside {mode}");
+            assert_eq!(pair.obey(Command::SetMode(other), 0.0), expected, "{other} compared with {mode}");
         }
     }
 }

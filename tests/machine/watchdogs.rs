@@ -1,4 +1,4 @@
-//! Every watchdog fired on purpose: it raises its own fault by its usual way, without force, in idle only.
+//! Every watchdog triggered on purpose: it raises its own fault in the usual way, without force, only while idle.
 use std::{
     sync::{
         Arc,
@@ -20,7 +20,8 @@ fn plan(engage: bool) -> Plan {
     Plan { scene: plan.scene.with_left_hand(), engage, ..plan }
 }
 
-/// States of both arms in turn; the test begins at 0.3 s, is released as soon as both are faulted, and engaged half a second later.
+/// Returns the sequence of states of both arms; the test begins at 0.3 s, is released as soon as both are faulted, and
+/// engaged half a second later.
 fn states(watchdog: Watchdog) -> [Vec<LoopState>; SIDES] {
     let mut states: [Vec<LoopState>; SIDES] = Default::default();
     let mut asked = false;
@@ -66,7 +67,7 @@ fn samples_and_parcels_that_are_withheld_raise_the_fault_of_their_watchdog_and_i
     }
 }
 
-/// A simulated rig with a lever, whose pulls are counted.
+/// A simulated rig with an emergency release whose calls are counted.
 struct Levered {
     worlds: Worlds,
     lever: Lever,
@@ -152,7 +153,7 @@ fn while_one_arm_is_not_idle_no_watchdog_is_tested() {
 
 #[test]
 fn a_watchdog_that_does_not_bite_is_given_up() {
-    // On the virtual clock nobody supervises the loop.
+    // On the virtual clock the loop has no supervisor.
     let mut control = Loop::new(&plan(false).rig, &[Some(Calibrations::default()), None]).unwrap();
     control.obey(Command::TestWatchdog(Watchdog::Loop), 0.0);
     let step = |control: &mut Loop, now_s: f64| control.step([None; SIDES], &Timing { now_s, ..Timing::default() });

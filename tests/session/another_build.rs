@@ -12,7 +12,7 @@ use nima_tests::plan;
 
 use crate::file::{recorded, replayed};
 
-/// The modes one after the other, and their settings.
+/// Selects the modes one after the other, with their settings.
 fn operator(tick: &Tick) -> Option<Command> {
     let all: Vec<Mode> = Mode::ALL.to_vec();
     match tick.index {

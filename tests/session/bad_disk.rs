@@ -1,4 +1,5 @@
-//! A disk that is slow, full or unplugged while a session is recorded: told at once, the loop unmoved, what is written stays readable.
+//! A disk that is slow, full or unplugged while a session is recorded: it is reported at once, the loop is unaffected,
+//! and written data stay readable.
 
 use std::{
     fs::{self, File},
@@ -22,7 +23,7 @@ use nima_tests::plan;
 
 use crate::file::{about, replayed};
 
-/// Somebody who watches, and who can keep the recorder's thread waiting as a slow disk does.
+/// An audience that can block the recorder's thread like a slow disk.
 #[derive(Clone, Debug, Default)]
 struct Watching {
     blocks: Arc<AtomicBool>,
@@ -61,7 +62,7 @@ fn wait_for(mut what: impl FnMut() -> bool) {
     }
 }
 
-/// Waits until the loop has made so many ticks more.
+/// Waits until the loop has made this many more ticks.
 fn wait_for_ticks(handle: &Handle, count: u64) {
     let mut first = None;
     let mut newest = 0;
@@ -71,7 +72,7 @@ fn wait_for_ticks(handle: &Handle, count: u64) {
     });
 }
 
-/// What the system says to every write to this file from now on: it is not open for writing.
+/// Makes every later write to this file fail: it is not open for writing.
 #[expect(unsafe_code, reason = "std exchanges no open file for another one")]
 fn unplug(path: &Path) {
     let broken = File::open(path).unwrap();
@@ -83,7 +84,7 @@ fn unplug(path: &Path) {
         .collect();
     assert_eq!(of_file.len(), 2, "one is written to, and one is synchronised");
     for number in of_file {
-        // SAFETY: both are open files of this process, and whoever has the second one goes on having an open file.
+        // SAFETY: both are open files of this process, and the owner of the second still has an open file afterwards.
         assert!(unsafe { libc::dup2(broken.as_raw_fd(), number) } == number);
     }
 }
@@ -96,7 +97,7 @@ fn times(path: &Path) -> Vec<u64> {
 
 #[test]
 fn a_slow_disk_is_told_and_the_loop_goes_on_and_the_file_says_what_is_missing() {
-    // A machine that holds up the recorder's thread loses entries before and after.
+    // A machine that delays the recorder's thread loses entries before and after.
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("session.mcap");
@@ -105,7 +106,7 @@ fn a_slow_disk_is_told_and_the_loop_goes_on_and_the_file_says_what_is_missing() 
         let (recorder, handle) = run(to);
         wait_for(|| recorder.progress().ticks > 500);
         slow.blocks.store(true, Ordering::Relaxed);
-        // There is room for 2.5 s, and nobody tells the loop.
+        // There is room for 2.5 s, and the loop is not informed.
         wait_for_ticks(&handle, 4000);
         let waits = recorder.progress().waits;
         assert!(waits > Duration::from_millis(300), "4 s of the loop, at four times its pace: {waits:?}");
@@ -120,14 +121,14 @@ fn a_slow_disk_is_told_and_the_loop_goes_on_and_the_file_says_what_is_missing() 
         let hole = outcome.hole.unwrap();
         assert!(outcome.differs.is_none() && hole.tick > 500 && hole.lost == told.lost, "{outcome:?}, {told:?}");
         let times = times(&path);
-        assert_eq!(times.len() as u64, told.ticks, "what came after it is there too");
+        assert_eq!(times.len() as u64, told.ticks, "later data are present too");
         assert!(times.windows(2).any(|pair| pair[1] - pair[0] > 500_000_000), "and a stretch between is not");
     });
 }
 
 #[test]
 fn a_disk_that_is_unplugged_is_told_and_what_is_live_goes_on() {
-    // A machine that holds up the recorder's thread loses entries.
+    // A machine that delays the recorder's thread loses entries.
     judged(|| {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("session.mcap");
@@ -143,7 +144,7 @@ fn a_disk_that_is_unplugged_is_told_and_what_is_live_goes_on() {
         wait_for(|| watching.forces.load(Ordering::Relaxed) > then + 2000);
         let summary = handle.stop_and_join().unwrap();
         assert!(matches!(recorder.finish(), Err(RecordError::Write(_) | RecordError::System { .. })));
-        assert_eq!(watching.forces.load(Ordering::Relaxed), summary.ticks, "whoever watches has seen every tick");
+        assert_eq!(watching.forces.load(Ordering::Relaxed), summary.ticks, "the audience has seen every tick");
         let outcome = replayed(&path).unwrap();
         assert!(outcome.differs.is_none() && outcome.ticks + 500 > 1500 && !outcome.closed, "{outcome:?}");
     });

@@ -1,4 +1,4 @@
-//! A loop whose tap is read into the memory.
+//! A loop whose tap is read into memory.
 
 use std::{thread, time::Duration};
 
@@ -13,7 +13,6 @@ use nima_session::{
 };
 use nima_simulation::Plan;
 
-/// The messages of a journal.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Kept(pub(crate) Vec<Vec<u8>>);
 
@@ -33,7 +32,7 @@ impl Kept {
         Self(kept)
     }
 
-    /// Replays it; every tick is told.
+    /// Replays it; every tick is passed to `each`.
     pub(crate) fn replayed(&self, mut each: impl FnMut(&Tick)) -> Result<Outcome, ReplayError> {
         let journal = || Journal::open(decoded(self.0.iter().map(|bytes| Ok(bytes.clone())), 0));
         let one_by_one = replay(journal()?, |replayed| replayed.ticks.iter().flatten().for_each(&mut each));
@@ -52,7 +51,7 @@ pub(crate) fn record(plan: &Plan, seconds: f64, each: impl FnMut(&Tick) -> Optio
     record_on(plan, plan.simulated().unwrap(), seconds, each)
 }
 
-/// The same with a given rig.
+/// Like [`record`], with a given rig.
 pub(crate) fn record_on(
     plan: &Plan,
     assembly: Assembly,

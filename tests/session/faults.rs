@@ -1,4 +1,4 @@
-//! What comes in the middle: faults, lost devices, calibrations put in force; holes; and what a flipped bit does.
+//! Disturbances during a session: faults, lost devices, activated calibrations; gaps; and the effect of a flipped bit.
 
 use std::{
     thread,
@@ -29,7 +29,7 @@ use nima_tests::plan;
 
 use crate::bench::{Kept, record, record_on, start_of};
 
-/// A world whose measurements are spoilt at times.
+/// A world whose measurements are corrupted at times.
 struct Spoilt<F> {
     worlds: Worlds,
     spoil: F,
@@ -100,7 +100,7 @@ fn faults_are_replayed_with_their_causes() {
     }
 }
 
-/// A resting arm with a wrist sensor that comes, goes and comes again.
+/// An arm at rest with a wrist sensor that connects, disconnects and connects again.
 struct AtWrist {
     t_s: f64,
     events: Vec<(f64, Standing)>,
@@ -171,7 +171,7 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     while t_s < 3.5 && begin.elapsed() < Duration::from_mins(2) {
         let change = handle.wrist_change(Side::Right);
         if change.is_there() && seen != Some(change) {
-            // Another one each time.
+            // A different one each time.
             let mass_kg = if seen.is_none() { 0.4 } else { 0.39 };
             seen = handle.put_in_force(change, &calibrated(mass_kg)).then_some(change);
         }
@@ -203,7 +203,7 @@ fn calibrations_put_in_force_while_the_loop_runs_are_in_the_journal() {
     assert!(sources.ends_with(&[none, wrist, none, wrist]), "{sources:?}");
     let lost = LoopState::Faulted(Fault::DeviceLost { device: 0, loss: Loss::Disconnected });
     assert!(states.contains(&LoopState::Engaged) && states.contains(&lost), "{states:?}");
-    // Without the calibrations the replay says so, and does not pretend.
+    // Without the calibrations the replay reports an error instead of continuing.
     let mut without = Kept(kept.0.clone());
     without.0.retain(|bytes| !matches!(decode(bytes), Ok((_, Message::Calibrations { .. }))));
     assert!(matches!(without.replayed(|_| {}), Err(ReplayError::Missing { .. })));
@@ -216,7 +216,7 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
     let (mut tap, end) = tap();
     let reader = thread::spawn({
         let start = start_of(&plan);
-        // Comes later than there is room for.
+        // Read too late for the queue's capacity.
         move || {
             thread::sleep(Duration::from_millis(300));
             Kept::of(&start, &end)
@@ -238,7 +238,7 @@ fn a_hole_is_told_and_nothing_behind_it_is_compared() {
     assert!((2000..3000).contains(&tick) && lost > 3000, "{outcome:?}");
 }
 
-/// The same journal with the block of this number changed, checksums and all.
+/// The same journal with a modification of the block with this number, including correct checksums.
 fn forged(kept: &Kept, which: usize, change: impl Fn(&mut Block)) -> Kept {
     let mut encoder = Encoder::default();
     let mut start = None::<Start>;

@@ -1,4 +1,4 @@
-//! Sessions in files: recorded by the recorder's thread, read again, damaged, and recorded to places that go away.
+//! Sessions in files: recorded by the recorder's thread, read back, damaged, and recorded to locations that disappear.
 
 use std::{
     collections::BTreeMap,
@@ -185,7 +185,7 @@ fn files_that_cannot_be_replayed_are_named() {
     recorded(&at("whole"), &plan("peg_transfer"), 4.0, |_| None);
     let whole = std::fs::read(at("whole")).unwrap();
     std::fs::write(at("cut"), &whole[..whole.len() / 2]).unwrap();
-    // What is there is replayed, and it is told that the end is missing; or the cut itself is named.
+    // The existing part is replayed and the missing end is reported, or the cut itself is.
     match replayed(&at("cut")) {
         Ok(outcome) => {
             assert!(outcome.ticks > 500 && outcome.ticks < 4000 && !outcome.closed, "{outcome:?}");
@@ -223,7 +223,7 @@ fn a_folder_that_is_gone_is_told_at_once_and_the_loop_goes_on() {
     wait_for(&|| recorder.trouble().is_some());
     let words = recorder.trouble().unwrap().to_string();
     assert!(words.contains("deleted") && words.contains("session.mcap"), "{words}");
-    // The tap is emptied all the same, and the loop runs on.
+    // The tap is emptied nevertheless, and the loop keeps running.
     let before = Instant::now();
     let mut newest = 0;
     while before.elapsed() < Duration::from_millis(500) {

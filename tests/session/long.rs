@@ -1,4 +1,4 @@
-//! A long session: what it takes on the disk and in memory.
+//! A long session: its size on the disk and in memory.
 
 use std::{fs, time::Instant};
 
@@ -14,7 +14,7 @@ use nima_tests::plan;
 
 use crate::file::{about, recorded};
 
-/// Memory of this process, MB; `None` where the system does not say.
+/// Memory of this process, MB; `None` if the system does not report it.
 fn memory_mb() -> Option<f64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
@@ -23,7 +23,7 @@ fn memory_mb() -> Option<f64> {
 
 /// Two arms on the virtual clock for `NIMA_MINUTES`, or one.
 #[test]
-#[ignore = "minutes: figures for docs/replay.md"]
+#[ignore = "minutes: figures for docs/results/replay.md"]
 fn figures_of_a_long_session() {
     let minutes: u64 = std::env::var("NIMA_MINUTES").map_or(1, |minutes| minutes.parse().unwrap());
     let folder = tempfile::tempdir().unwrap();
@@ -44,8 +44,8 @@ fn figures_of_a_long_session() {
     assert_eq!((told.ticks, told.lost), (minutes * 60_000, 0));
     let reader = Reader::open(&path).unwrap();
     let forces = reader.channels().iter().find(|channel| channel.topic == "left/forces").unwrap();
-    assert_eq!(forces.messages, Some(minutes * 60_000), "every sample is there");
-    // The journal alone, in chunks as long as those of the session.
+    assert_eq!(forces.messages, Some(minutes * 60_000), "every sample is present");
+    // Only the journal, in chunks as long as the session's.
     let mut alone = Writer::create(&journal, "figures").unwrap();
     let channel = reader.channels().iter().find(|channel| channel.topic == JOURNAL_TOPIC).unwrap();
     let channel = alone.channel(JOURNAL_TOPIC, channel.encoding.clone()).unwrap();
@@ -71,9 +71,9 @@ fn figures_of_a_long_session() {
     assert!(all_mb <= 75.0 && journal_mb <= 25.0);
 }
 
-/// Two arms and one, replayed tick by tick in one thread and as `nima replay` does it, in turn.
+/// Two arms and one, replayed tick by tick in one thread and like `nima replay`, in turn.
 #[test]
-#[ignore = "a minute: figures for docs/replay.md"]
+#[ignore = "a minute: figures for docs/results/replay.md"]
 fn figures_of_replay() {
     const SECONDS: f64 = 120.0;
     let folder = tempfile::tempdir().unwrap();

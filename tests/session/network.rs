@@ -1,4 +1,4 @@
-//! A loop with every calibration in force: the network for the tip force, with its doubt and its fallback.
+//! A loop with every calibration active: the network for the tip force, with its uncertainty and its fallback.
 
 use std::sync::atomic::AtomicBool;
 
@@ -23,7 +23,7 @@ use crate::bench::record;
 
 const SOMEBODY: &str = "Dr Somebody";
 
-/// A network that somebody has kept although it was not proven.
+/// A network that was accepted by a person although it was not proven.
 fn network(known: &Known) -> Model {
     let scene = Experiment::scene("isolation", 3).unwrap();
     let data = recorded(&scene, known, FeatureSettings::default(), 6000, 7.0).unwrap().data(None).unwrap();
@@ -66,7 +66,7 @@ fn a_network_in_force_replays_to_the_bit_and_tells_no_name_of_a_person() {
         let mut by_fallback = 0;
         let mut unknown_s = 0.0;
         let kept = record(&plan, 8.0, |tick| {
-            // A force that is held and faded is measured by nobody, nor does the link bring one that was.
+            // A force that is held and faded is not measured, nor does the link deliver a measured one.
             let is_known = tick.force.source.is_known();
             unknown_s = if is_known { 0.0 } else { unknown_s + 1e-3 };
             assert_eq!(tick.known_n().is_some(), is_known);

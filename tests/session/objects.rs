@@ -1,4 +1,4 @@
-//! Objects of a scene in a session, whoever tells of them: recorded, read, cut out and made anonymous.
+//! Objects of a scene in a session, from any source: recorded, read, cut out and made anonymous.
 
 use std::{collections::VecDeque, path::Path, sync::atomic::AtomicBool};
 
@@ -22,7 +22,7 @@ use nima_tests::plan;
 
 use crate::file::{about, recorded, replayed};
 
-/// Tells a hundred times a second of two rings, of which one is lost after two seconds, and of the right jaws.
+/// Reports two rings, one of which is lost after two seconds, and the right jaws, a hundred times per second.
 #[derive(Debug)]
 struct Told {
     moments: VecDeque<Objects>,
@@ -43,7 +43,7 @@ fn moment(number: u32) -> Objects {
     let t_s = f64::from(number) * 0.01;
     let turn = UnitQuaternion::from_euler_angles(0.1, t_s, -0.3);
     let ring = |x_m: f64| Isometry3::from_parts(Translation3::new(x_m, t_s, 0.1 * t_s), turn);
-    // One that is out of view, before another.
+    // A ring that is out of view, before another.
     let rings = vec![(number < 200).then(|| ring(-0.02)), Some(ring(0.01))];
     let jaws = Jaws {
         opening_rad: 0.2 * t_s,
@@ -57,7 +57,7 @@ fn moment(number: u32) -> Objects {
     objects
 }
 
-/// Of every scene that there may be.
+/// Events of every possible scene.
 fn events() -> Vec<Happening> {
     let side = Side::Left;
     let events = [
@@ -71,12 +71,12 @@ fn events() -> Vec<Happening> {
     events.map(|(t_s, event)| Happening { t_s, event }).to_vec()
 }
 
-/// Three seconds of a loop, and what is told besides.
+/// Records three seconds of a loop, with the objects.
 fn record(path: &Path) {
     let plan = plan("peg_transfer");
     let (tap, end) = tap();
     let recorder = Recorder::start(Destination::file(path), about(), plan.origin(), end).unwrap();
-    // More than the session: what is told of a time that the loop never came to is not in it.
+    // Longer than the session: states of times that the loop never reached are not recorded.
     recorder.watch(Box::new(Told { moments: (0..400).map(moment).collect(), happenings: events().into() }));
     runtime::run_virtual(Assembly { tap: Some(tap), ..plan.simulated().unwrap() }, 3.0, |_| None);
     recorder.finish().unwrap();

@@ -1,5 +1,5 @@
-//! The endoscope's pictures in a session: recorded as they came, at the loop's time of their arrival, and neither in a stretch's way nor in an
-//! anonymous session.
+//! The endoscope images in a session: recorded unmodified, at the loop's time of their arrival. They must not disturb
+//! an excerpt, and must not be in an anonymous session.
 
 use std::{
     path::Path,
@@ -31,7 +31,7 @@ const SQUARE_PX: usize = 8;
 const SIZE_PX: [usize; 2] = [256, 24];
 const PERIOD: Duration = Duration::from_millis(33);
 
-/// Hands over a picture of now every 33 ms, as a camera's reader does, but for what came before the loop began.
+/// Delivers a current image every 33 ms, like a camera's reader, and also old ones from before the loop began.
 #[derive(Debug)]
 struct Camera {
     due: Instant,
@@ -40,7 +40,7 @@ struct Camera {
 
 impl Camera {
     fn new() -> Self {
-        // What came a minute ago is none of this session's.
+        // An image from a minute ago does not belong to this session.
         let before = Instant::now().checked_sub(Duration::from_mins(1)).map(|at| taken(at, 1));
         Self { due: Instant::now(), waiting: before.into_iter().collect() }
     }
@@ -72,7 +72,7 @@ impl PictureSource for Camera {
     }
 }
 
-/// A camera that sends a stream: every tenth picture refers to no other.
+/// A camera that sends a stream: every tenth frame is a key frame.
 #[derive(Debug)]
 struct Streaming {
     due: Instant,
@@ -101,7 +101,7 @@ impl PictureSource for Streaming {
     }
 }
 
-/// Some seconds of a simulated rig on the real clock, with pictures.
+/// Some seconds of a simulated rig on the real clock, with images.
 fn record(path: &Path, camera: impl PictureSource + 'static, seconds: u64) -> Progress {
     let _alone = real_time::alone();
     let plan = plan("peg_transfer");
@@ -147,7 +147,7 @@ fn pictures_are_recorded_as_they_came_at_the_loops_time_of_their_arrival() {
             Some(true).filter(|_| told.number > 0)
         );
     }
-    // The loop's clock and that of the code differ by when the loop began.
+    // The loop's clock and the code's clock differ by the start of the loop.
     offsets_s.sort_by(f64::total_cmp);
     let spread_s = offsets_s[offsets_s.len() - 1] - offsets_s[0];
     assert!(spread_s < PERIOD.as_secs_f64(), "{spread_s} s");
@@ -183,7 +183,7 @@ fn a_stream_is_recorded_and_a_picture_comes_with_those_that_it_refers_to() {
         reader.messages(&[VIDEO_TOPIC], 0..u64::MAX).map(|message| message.unwrap().log_time_ns()).collect();
     assert!(times_ns.len() > 15, "{} pictures", times_ns.len());
     let mut pictures = Pictures::open(&path).unwrap().unwrap();
-    // Those before the loop's first tick are none of the session's.
+    // Images from before the loop's first tick do not belong to the session.
     let first = pictures.at((times_ns[0] - begin_ns) as f64 / 1e9).unwrap().unwrap().data[0];
     let numbers = |found: Vec<Recorded>| found.iter().map(|picture| picture.data[0]).collect::<Vec<u8>>();
     for (number, time_ns) in (first..).zip(&times_ns) {
@@ -192,7 +192,7 @@ fn a_stream_is_recorded_and_a_picture_comes_with_those_that_it_refers_to() {
         let key = number - number % KEY_EVERY;
         let needed: Vec<u8> = if key < first { Vec::new() } else { (key..=number).collect() };
         assert_eq!(numbers(pictures.leading_to(*time_ns, None, is_key).unwrap()), needed);
-        // A decoder that stands three pictures before goes on; one that stands behind, or long before, begins anew.
+        // A decoder that is three frames behind continues; one that is ahead, or far behind, restarts.
         if let Some(three_before) = usize::from(number - first).checked_sub(3) {
             let known_ns = Some(times_ns[three_before]);
             assert_eq!(

@@ -1,4 +1,4 @@
-//! Every scene, commands and faults: what is replayed is what was recorded.
+//! Every scene, commands and faults: the replay equals the recording.
 
 use nalgebra::Vector3;
 use nima_core::impedance::Mode;
@@ -31,7 +31,7 @@ fn every_scene_replays_bit_for_bit() {
     }
 }
 
-/// Commands of every kind at odd times, also refused ones.
+/// Commands of every kind at arbitrary times, including refused ones.
 fn operator(tick: &Tick) -> Option<Command> {
     Some(match tick.index {
         700 => Command::SetMode(Mode::Dfr),
@@ -70,7 +70,7 @@ fn commands_are_replayed_when_they_came() {
     }
 }
 
-/// Somebody leads the right instrument by the screen for a while, opens and closes its jaws, and begins the trial anew.
+/// Leads the right instrument from the screen for a while, opens and closes its jaws, and restarts the trial.
 fn by_mouse(tick: &Tick) -> Option<Command> {
     Some(match tick.index {
         9_000 => Command::Guide(Side::Right, Some(Vector3::new(0.02, -0.01, 0.02))),

@@ -1,4 +1,4 @@
-//! A force that was not known is no number in a session, and no sample of a recording.
+//! An unknown force is NaN in a session, and not a sample of a recording.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! A rig file that names other devices: the machine comes up with them, and what each part delivers comes from the
-//! device that was chosen for it. The emulated devices stay where they are, as real ones do.
+//! A rig file that names other devices: the machine starts with them, and each part gets its data from the selected
+//! device. The emulated devices stay in place, like real ones.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,7 @@ use nima_tests::emulated::{elsewhere, rig_file, started};
 
 const TIMEOUT: Duration = Duration::from_secs(20);
 
-/// A running machine, and the newest that it told of its devices.
+/// A running machine, and the last status of its devices.
 struct Machine {
     handle: Handle,
     healths: Healths,
@@ -73,7 +73,7 @@ fn the_chosen_handle_and_the_exchanged_sensors_are_the_ones_that_the_machine_use
         let devices = elsewhere(folder.path());
         let emulated = started(&devices);
         let mut file = rig_file(&devices);
-        // Emulated handles know their hands, as real ones do: who wants them exchanged says so.
+        // Emulated handles report their hands, like real ones, so a swap must be set explicitly.
         file.set("devices.right.handle.hand", "right");
         file.set("devices.left.handle.hand", "left");
         file.choose(Part::Handle(Side::Right), &Chosen::Of(Part::Handle(Side::Left)));
@@ -88,7 +88,7 @@ fn the_chosen_handle_and_the_exchanged_sensors_are_the_ones_that_the_machine_use
         let serials = [Part::Sensor(Side::Right), Part::Sensor(Side::Left)].map(|part| machine.serial(part));
         assert_eq!(serials, ["SN000902", "SN000901"]);
 
-        // Who falls silent tells which device is behind a part.
+        // A device that falls silent shows which part it serves.
         for (device, part) in [("left sensor", Part::Sensor(Side::Right)), ("left servos", Part::Servos(Side::Right))] {
             machine.until("all connected", Machine::all_connected);
             assert!(emulated.set_fault(device, EmulatedFault::Silence));

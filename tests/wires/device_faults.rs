@@ -1,5 +1,5 @@
 //! Every fault of every emulated device in the running loop: what is reported, how soon, how the force changes, and
-//! whether the device recovers. The whole writes the table in `docs/devices.md`.
+//! whether the device recovers. The whole writes the table in `docs/results/device-faults.md`.
 #![cfg(target_os = "linux")]
 use std::{
     cell::{Cell, RefCell},
@@ -20,7 +20,7 @@ use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{at_tip, started_in};
 
-/// Time limit for the event of a device; a tracker sends 60 frames a second.
+/// Time limit for the event of a device; a tracker sends 60 frames per second.
 const TOLD_MS: f64 = 20.0;
 const TRACKER_TOLD_MS: f64 = 100.0;
 /// Allowance for the test's polling and for a shared computer.
@@ -28,16 +28,17 @@ const SLACK_MS: f64 = 15.0;
 /// Time limit for a device to recover after the end of its fault.
 const BACK_WITHIN: Duration = Duration::from_secs(6);
 
-/// Least force in the hand when a fault begins, N, and for how long it has been there.
+/// Minimum force in the hand when a fault begins, N, and how long it must have been present.
 const PRESSED_N: f64 = 0.4;
 const PRESSED: Duration = Duration::from_millis(100);
 /// Duration of a fault.
 const FAULT: Duration = Duration::from_millis(450);
-/// Ticks of the loop in that time, of 450, with fewer of which it was held up itself: what a device does then is not seen.
+/// Minimum number of the loop's ticks in that time, of 450; with fewer, the loop itself was delayed and misses the
+/// device's behaviour.
 const TICKS_MIN: u64 = 360;
-/// So long after its end a person may leave the loop alone: it must not engage by itself.
+/// For this long after the fault the loop is left alone: it must not engage by itself.
 const LEFT_ALONE: Duration = Duration::from_millis(300);
-/// The devices whose faults are tried at once: from the last of these sets the force does not come.
+/// The devices whose faults are tested together; the force does not come from those of the last set.
 const SETS: [&[&str]; 4] =
     [&["right handle"], &["right arm"], &["right sensor"], &["right servos", "tissue sensor", "tracker", "pedal"]];
 
@@ -52,7 +53,7 @@ struct Bench {
 impl Bench {
     fn new(devices: &Settings) -> Self {
         let mut scene = Scene::load("peg_transfer").unwrap();
-        // A force is what the faults are to take away: the hand presses all the time.
+        // The faults must remove a force, so the hand presses all the time.
         scene.hand.hold_s = 1e4;
         let rig = started_in(&scene, devices);
         let mut config = RigConfig::load("emulated").unwrap();
@@ -98,7 +99,7 @@ impl Bench {
         self.newest.map_or(LoopState::Idle, |tick| tick.state)
     }
 
-    /// Ticks that the loop has made.
+    /// Number of the loop's ticks.
     fn index(&self) -> u64 {
         self.newest.map_or(0, |tick| tick.index)
     }
@@ -143,7 +144,6 @@ impl Bench {
     }
 }
 
-/// Result of one fault.
 struct Row {
     device: &'static str,
     fault: &'static str,
@@ -156,7 +156,7 @@ struct Row {
 }
 
 impl Row {
-    /// What is wrong with the result, if anything.
+    /// Checks the result.
     fn verdict(&self) -> Result<(), String> {
         let Self { device, fault, told, told_ms, zero_ms, state, back_s, by_itself } = self;
         let seen =
@@ -164,11 +164,12 @@ impl Row {
         let wrong = |what: String| Err(format!("{device}, {fault}: {what} ({seen})"));
         let limit_ms = SLACK_MS + if *device == "tracker" { TRACKER_TOLD_MS } else { TOLD_MS };
         let carries_force = !["pedal", "right servos", "tissue sensor", "tracker"].contains(device);
-        // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost when
-        // too many in a row are bad, which may happen at any time.
+        // Frames are affected at random: while enough good ones arrive they are only counted, and the device is lost
+        // when too many in a row are bad, which may happen at any time.
         let asked_and_late = *device == "tracker" && *fault == "delay";
         let by_chance = ["loss", "garbage", "reorder"].contains(fault) || asked_and_late;
-        // Asked for each frame, it answers late: frames are missing, and it is lost only if one of them comes too late.
+        // A device that is polled for each frame answers late: frames are missing, and it is lost only if one of them
+        // is too late.
         if asked_and_late && told.is_empty() {
             return wrong("missing frames are not counted".to_owned());
         }
@@ -211,7 +212,7 @@ fn counted(before: &Health, after: &Health) -> String {
     if told.is_empty() { String::new() } else { format!("counted: {}", told.join(", ")) }
 }
 
-/// A device with a fault, and what is seen of it.
+/// A device with a fault, and the observations of it.
 struct Trial {
     device: &'static str,
     place: usize,
@@ -236,7 +237,7 @@ impl Trial {
         };
     }
 
-    /// The same, so long after the end of the fault, until it is back.
+    /// Observes it at this time after the end of the fault, until it has recovered.
     fn look_for_it(&mut self, bench: &Bench, after: Duration) {
         let entry = &bench.handle.roster()[self.place];
         // A fault of the device itself is cleared by a command, as from the console's button.
@@ -249,7 +250,7 @@ impl Trial {
     }
 }
 
-/// Tries the same fault of these devices at once.
+/// Tests the same fault of these devices together.
 fn try_out(bench: &mut Bench, devices: &[&'static str], fault: EmulatedFault) -> Vec<Row> {
     bench.pressing();
     bench.lost.clear();
@@ -317,7 +318,7 @@ fn table(rows: &[Row]) -> String {
     out
 }
 
-/// Data that are late, always spoilt, not sent, or impossible.
+/// Late, always corrupted, missing, or impossible data.
 const SOME: [EmulatedFault; 4] =
     [EmulatedFault::Delay, EmulatedFault::BadChecksum, EmulatedFault::Disconnect, EmulatedFault::NotANumber];
 
@@ -354,7 +355,7 @@ fn all_pass(faults: &[EmulatedFault]) -> Vec<Row> {
             });
             rows.extend(last.take());
         }
-        // Device by device, as they were named.
+        // Device by device, in the given order.
         rows[first..].sort_by_key(|row| devices.iter().position(|device| *device == row.device));
     }
     assert!(bench.borrow().handle.is_running());

@@ -22,7 +22,7 @@ use nima_simulation::scene::Scene;
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{DEVICES, elsewhere, right_arm, started};
 
-/// Polls once a millisecond until the condition is true.
+/// Polls once per millisecond until the condition is true.
 fn until<D: Device>(device: &mut D, what: &str, mut good: impl FnMut(&mut D, Option<D::Reading>) -> bool) {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(3) {
@@ -50,7 +50,7 @@ fn every_device_of_the_embedded_rig_delivers_at_its_place() {
     let rig = started(&devices);
     let names: Vec<_> = rig.servings().iter().map(|device| device.name.as_str()).collect();
     assert_eq!(names, DEVICES);
-    // What a busy machine holds up looks damaged.
+    // Delays by a busy machine look like damage.
     judged(|| {
         std::thread::scope(|scope| {
             for side in Side::ALL {
@@ -113,8 +113,8 @@ fn pressed(rig: &EmulatedRig, set: &ArmSet) -> Option<[Vec<Vector3<f64>>; 2]> {
     while tick < 3500 {
         let t_s = begin.elapsed().as_secs_f64();
         if let Some(reading) = arm.poll(t_s) {
-            // An arm that has left its servoing, because a frame came late, does not take it up again by itself: to wait for it would
-            // hide the busy moment in a long attempt.
+            // An arm that has left its servoing, because a frame was late, does not resume by itself: waiting for it
+            // would hide the busy moment in a long attempt.
             if servoing && !reading.value.servoing {
                 return None;
             }
@@ -198,7 +198,7 @@ fn the_tracker_tells_how_the_endoscope_looks_whatever_the_rig_file_has() {
     let (mut rig, roster) = DeviceRig::start(&devices, 1e-3, [false; SIDES]).unwrap();
     let begin = Instant::now();
     let mut seen = [None; SIDES];
-    // Far longer than it takes, also on a busy machine.
+    // Far longer than needed, even on a busy machine.
     while seen.iter().any(Option::is_none) && begin.elapsed() < Duration::from_mins(2) {
         let inputs = rig.read(begin.elapsed().as_secs_f64());
         for side in Side::ALL {
@@ -248,8 +248,8 @@ struct JawsShown {
 }
 
 impl JawsShown {
-    /// Whether the readings were timely and enough, so that the figures show the PID and not the load of the computer. That
-    /// the servos answer at all is tested by others.
+    /// Whether the readings were timely and sufficient, so that the results show the PID and not the load of the
+    /// computer. Other tests check that the servos answer at all.
     fn is_quiet(&self) -> bool {
         self.period_p99_s < 0.004 && self.readings >= READINGS
     }
@@ -290,7 +290,7 @@ fn jaws_in_motion(devices: &Settings) -> JawsShown {
     if readings < READINGS {
         return JawsShown { rms_deg: f64::INFINITY, readings, late_s: f64::INFINITY, period_p99_s };
     }
-    // The first second is for the integral part to settle.
+    // The integral part settles in the first second.
     let rms_deg = |late: usize| {
         let pairs = way[..way.len() - late].iter().zip(&way[late..]).skip(1000);
         let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), ((asked, _), (_, jaws))| {

@@ -1,4 +1,5 @@
-//! The endoscope of an emulated rig sees both instruments where the simulated world has them, also after it was pushed.
+//! The endoscope of an emulated rig shows both instruments at their positions in the simulated world, also after it was
+//! pushed.
 #![cfg(target_os = "linux")]
 use std::{
     net::TcpListener,
@@ -53,7 +54,7 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
         assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", feed.standing(Instant::now()));
         thread::sleep(Duration::from_millis(5));
     };
-    // Nobody drives the arms, so that the tips are still where they were.
+    // The arms are not driven, so the tips have not moved.
     for side in Side::ALL {
         let place_px = camera_of(&settings).project(&rig.truth(side).unwrap().tip_m).unwrap();
         let at = 4 * (picture.size_px[0] * place_px.y as usize + place_px.x as usize);
@@ -62,12 +63,11 @@ fn both_tips_are_in_the_picture_where_the_world_has_them() {
     }
 }
 
-/// The colour of the tips.
 fn is_tip(pixel: &[u8]) -> bool {
     pixel[1] > 150 && pixel[0] < 90 && pixel[2] < 150
 }
 
-/// The middle of the tip that is seen near here, px; `None` where there is none.
+/// The middle of the tip that is visible near here, px; `None` if there is none.
 fn tip_px(picture: &Picture, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
     let width = picture.size_px[0];
     let places = picture.rgba.chunks_exact(4).enumerate().filter(|(_, pixel)| is_tip(pixel));
@@ -76,7 +76,7 @@ fn tip_px(picture: &Picture, near_px: &Vector2<f64>) -> Option<Vector2<f64>> {
     (near.len() > 20).then(|| near.iter().sum::<Vector2<f64>>() / near.len() as f64)
 }
 
-/// Reads the rig for so long; gives the mean place of the endoscope's marker, and its last orientation.
+/// Reads the rig for this long; returns the mean position of the endoscope's marker, and its last orientation.
 fn marker(rig: &mut DeviceRig, begin: Instant, last: Duration) -> Option<Isometry3<f64>> {
     let end = Instant::now() + last;
     let mut seen = Vec::new();
@@ -116,7 +116,7 @@ fn the_camera_goes_with_the_marker_on_a_pushed_endoscope() {
 
         let feed = Feed::start(url.parse().unwrap(), Some(settings.size_px), || {}).unwrap();
         assert!(emulated.set_fault("endoscope", EmulatedFault::Moved));
-        // The first picture from there takes some tenths of a second to make.
+        // The first image from there takes some tenths of a second to render.
         let end = Instant::now() + Duration::from_secs(20);
         let misses_px = loop {
             let world_from_n = marker(&mut rig, begin, Duration::from_millis(500)).unwrap();

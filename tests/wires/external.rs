@@ -1,4 +1,5 @@
-//! Devices of a lab's own: the examples in C and Python drive the real loop over UDP, and are killed, stopped and started again.
+//! Devices of a lab's own design: the examples in C and Python drive the real loop over UDP, and are killed, stopped
+//! and restarted.
 #![cfg(target_os = "linux")]
 use std::{
     net::UdpSocket,
@@ -25,7 +26,7 @@ use nima_testing::{
 
 /// Time limit for the force after a program has died, s.
 const GONE_S: f64 = 0.020;
-/// Least force in the hand before a program is killed, N.
+/// Minimum force in the hand before a program is killed, N.
 const FELT_N: f64 = 0.3;
 const WAIT: Duration = Duration::from_secs(12);
 
@@ -33,7 +34,7 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-/// The rig of the guide, at ports that are free.
+/// The guide's rig, on free ports.
 fn rig(ports: [u16; 3]) -> RigConfig {
     let guide = std::fs::read_to_string(here("docs/external-device.md")).unwrap();
     let (_, after) = guide.split_once("```toml\n").unwrap();
@@ -54,14 +55,14 @@ fn free_ports() -> [u16; 3] {
     sockets.map(|socket| socket.local_addr().unwrap().port())
 }
 
-/// How the examples are run: compiled, or by the interpreter.
+/// How the examples are run: compiled, or interpreted.
 enum Examples {
     C(PathBuf),
     Python,
 }
 
 impl Examples {
-    /// Without a warning of the compiler. `None` where there is none.
+    /// Compiled without warnings. `None` if there is no compiler.
     fn in_c(folder: &Path) -> Option<Self> {
         if Process::new("cc").arg("--version").output().is_err() {
             unjudged::left_out("no C compiler (cc) is installed");
@@ -108,7 +109,7 @@ impl Running {
         }
     }
 
-    /// Ends it in its own way; what it has counted.
+    /// Ends it regularly; returns its counts.
     fn counted(mut self) -> Vec<serde_json::Value> {
         self.signal(libc::SIGTERM);
         let output = self.0.take().unwrap().wait_with_output().unwrap();
@@ -160,7 +161,7 @@ impl Bench {
         }
     }
 
-    /// What does not come on a machine with time for it is judged by the watch of the machine.
+    /// Waits for a condition; if it fails, the test is judged only if the machine had time.
     fn until(&mut self, what: &str, good: impl Fn(&Self) -> bool) {
         let begin = Instant::now();
         while !good(self) {
@@ -187,10 +188,10 @@ impl Bench {
 
     /// Engages by command, and waits until the hand feels the sensor's force.
     fn engage(&mut self) {
-        // What is known may be from before a loss.
+        // The status may date from before a loss.
         self.healths = [Health::default(); 3];
         self.until("all connected", |bench| bench.healths.iter().all(|h| h.standing == Standing::Connected));
-        // A release is refused until the first readings are there.
+        // A release is refused until the first readings have arrived.
         let begin = Instant::now();
         while self.is_faulted() && begin.elapsed() < WAIT {
             assert!(self.handle.send(Command::ReleaseStop));
@@ -203,7 +204,7 @@ impl Bench {
         assert!(felt(self), "not engaged: {:?}", self.state());
     }
 
-    /// What happens after `act` to the program of these devices: the cause, and after what time the force is gone, s.
+    /// Returns the effect of `act` on the program of these devices: the cause, and the time until the force is gone, s.
     fn after(&mut self, act: impl FnOnce(), devices: &[usize]) -> (Loss, f64) {
         self.look();
         self.lost.clear();
@@ -220,7 +221,7 @@ impl Bench {
     }
 }
 
-/// The numbers behind this name in an example.
+/// Returns the numbers with this name in an example.
 fn numbers_in(path: &str, name: &str) -> Vec<f64> {
     let text = std::fs::read_to_string(here(path)).unwrap();
     let (_, after) = text.split_once(name).unwrap();
@@ -301,7 +302,8 @@ fn when_a_program_in_c_dies_or_stands_still_the_force_is_gone_and_the_cause_is_t
     });
 }
 
-/// A stranger on the same computer, louder than the handle: nothing of it is heard, and no tick is late for it.
+/// An unknown program on the same computer that sends more than the handle: its data are ignored, and no tick is late
+/// because of it.
 #[test]
 #[ignore = "real lines in real time: `./dev test` runs it alone"]
 fn nobody_else_is_heard_beside_the_first_program_and_its_double_waits() {
@@ -335,7 +337,7 @@ fn nobody_else_is_heard_beside_the_first_program_and_its_double_waits() {
     });
 }
 
-/// The figures of the guide: a minute at 1 kHz.
+/// The guide's measurements: a minute at 1 kHz.
 fn minute(examples: &Examples, seconds: u64) {
     let ports = free_ports();
     let hand = examples.start("handle", &ports[..1]);
@@ -349,7 +351,7 @@ fn minute(examples: &Examples, seconds: u64) {
     bench.ticks.clear();
     while begin.elapsed() < Duration::from_secs(seconds) && bench.state() == LoopState::Engaged {
         bench.look();
-        // The first rate is told half a second after opening.
+        // The first rate is available half a second after opening.
         if begin.elapsed() > Duration::from_secs(1) {
             rates_hz.push(bench.healths.map(|health| health.rate_hz));
         }
@@ -391,7 +393,7 @@ fn minute(examples: &Examples, seconds: u64) {
 }
 
 #[test]
-#[ignore = "a minute each, for the figures of docs/external-device.md"]
+#[ignore = "a minute each, for the figures of docs/results/external-device.md"]
 fn figures_of_a_minute_in_c() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
@@ -401,7 +403,7 @@ fn figures_of_a_minute_in_c() {
 }
 
 #[test]
-#[ignore = "a minute each, for the figures of docs/external-device.md"]
+#[ignore = "a minute each, for the figures of docs/results/external-device.md"]
 fn figures_of_a_minute_in_python() {
     let _alone = alone();
     minute(&Examples::Python, 60);

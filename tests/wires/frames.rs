@@ -1,4 +1,5 @@
-//! Frame calibrations over the emulated wires: the drivers' readings in the ticks, judged against what only the emulators know.
+//! Frame calibrations over the emulated interfaces: the drivers' readings in the ticks, compared with the emulators'
+//! true state.
 use std::time::Duration;
 
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -18,10 +19,10 @@ use super::technician::Bench;
 
 const SIDE: Side = Side::Right;
 
-/// Lets the technician do it until nothing is missing; a machine that is too busy for that is not judged.
+/// Lets the technician work until nothing is missing; on a machine that is too busy the test is not judged.
 fn run<C: Calibration>(bench: &mut Bench, calibration: C, task: Task, prompt: Prompt) -> FrameReport<C::Found> {
     let mut session = FrameSession::new(calibration);
-    // He carries the arm to where it begins.
+    // The technician carries the arm to the start.
     bench.show(SIDE, task, Prompt::Rest);
     bench.rests(SIDE);
     bench.show(SIDE, task, prompt);
@@ -45,7 +46,7 @@ fn pose(isometry: &nalgebra::IsometryMatrix3<f64>) -> Isometry3<f64> {
     Isometry3::from_parts(isometry.translation, isometry.rotation.into())
 }
 
-/// The tracker's place and the marker's, found by turning an instrument whose tip is known.
+/// Determines the poses of the tracker and the marker by rotating an instrument whose tip is known.
 fn find_hand_eye(bench: &mut Bench, arm: &Arm, tip_m: Vector3<f64>) {
     let found = run(bench, HandEye::new(tip_m), Task::HandEye, Prompt::Turn).found.unwrap();
     let known = bench.rig.truth(SIDE).unwrap();
@@ -75,7 +76,7 @@ fn tip_hand_eye_and_trocar_are_found_within_half_a_millimetre() {
     let truth = elsewhere(folder.path());
     let set = truth.arm(SIDE).unwrap();
     let arm = Arm::new(&set.mount).unwrap();
-    // The loop's rig file is wrong about the tip and about the trocar, and does not know the tracker's place.
+    // The loop's rig file is wrong about the tip and about the trocar, and lacks the tracker's pose.
     let mut believed = truth.clone();
     let wrong = believed.right.as_mut().unwrap();
     wrong.mount.shaft_m += 0.006;

@@ -1,4 +1,4 @@
-//! The rig of a Haply handle: the handle is emulated on its line, the hand feels the simulated tissue.
+//! The rig of a Haply handle: the handle is emulated on its port, and the hand feels the simulated tissue.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -21,12 +21,12 @@ use nima_machine::{
 use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged};
 
-/// How far the hand goes down into the tissue, m, and how fast, m/s.
+/// Depth of the hand's motion into the tissue, m, and its speed, m/s.
 const DEEP_M: f64 = 0.08;
 const SPEED_M_S: f64 = 0.02;
 const WAIT: Duration = Duration::from_secs(15);
 
-/// A hand that rests for two seconds and then goes down, held by a stiff spring.
+/// A hand that rests for two seconds and then moves down, held by a stiff spring.
 fn pressing(felt: &Felt, begins: std::sync::Arc<std::sync::atomic::AtomicBool>) -> Serving {
     let mut body = felt.on_a_circle();
     let mut since_s = None;
@@ -88,14 +88,14 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         let begins = std::sync::Arc::default();
         let serving = pressing(&felt, std::sync::Arc::clone(&begins));
         let mut rig = RigConfig::load("haply-desk").unwrap();
-        assert!(!rig.is_harmless() && !rig.has_simulated_hand(), "nobody else than a person engages it");
+        assert!(!rig.is_harmless() && !rig.has_simulated_hand(), "only a person engages it");
         rig.desk.as_mut().unwrap().handle = Some(LeaderSettings::Haply(Settings::at(serving.endpoint.as_str())));
         rig.validate().unwrap();
         assert_eq!(rig.device_names()[0].to_string(), "right handle (Haply)");
         rig.mode = Mode::Dfr;
         rig.gates.static_hold = true;
         let scene = Scene::load("peg_transfer").unwrap();
-        // A wish that is not granted: a person's hand may be at the handle.
+        // A request that is refused: a person's hand may be at the handle.
         let plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
         let handle = nima_simulation::start(&plan).unwrap();
         assert_eq!(handle.roster()[0].name(), "right handle");
@@ -112,7 +112,7 @@ fn a_haply_handle_feels_the_simulated_tissue_and_a_silent_one_takes_the_force_aw
         bench.until("engaged", |bench| bench.is(LoopState::Engaged));
         begins.store(true, std::sync::atomic::Ordering::Relaxed);
         bench.until("a force", |_| felt.force_n().z > 0.3);
-        // What the hand feels is what came out of the gates.
+        // The hand feels the output of the gates.
         let rendered_n = bench.newest.unwrap().rendered_n;
         assert!((rendered_n - felt.force_n()).norm() < 0.5, "{rendered_n} and {}", felt.force_n());
         serving.faults.set(EmulatedFault::Silence);

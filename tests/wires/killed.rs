@@ -22,7 +22,7 @@ use nima_tests::{
     plan,
 };
 
-/// Names the rig file of the process that is killed.
+/// Environment variable with the rig file of the process that is killed.
 const RIG: &str = "NIMA_TEST_RIG";
 /// Watchdog of the handle in the rig file, s.
 const WATCHDOG_S: f64 = 0.020;
@@ -87,8 +87,7 @@ fn a_killed_process_leaves_no_force_in_the_hand() {
             }
             None
         };
-        // A busy computer may stall the loop before there is a contact: then it has stopped, and the test starts
-        // another one.
+        // A busy computer may stall the loop before there is a contact: then it has stopped, and the test restarts it.
         let feels = |child: Killed| {
             until(Duration::from_secs(8), &|truth| truth.applied.force_n.norm() > 0.5 && truth.servoing).map(|_| child)
         };

@@ -1,4 +1,4 @@
-//! The rig with its real drivers, on emulated devices and real wires, in real time.
+//! The rig with its real drivers, on emulated devices and real interfaces, in real time.
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

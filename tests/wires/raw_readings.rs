@@ -1,5 +1,5 @@
-//! Force sensors whose line and clock are sound and whose numbers are not, on rigs with an arm: the arm turns what the loop makes of the
-//! numbers, and the force is gone all the same.
+//! Force sensors with an intact connection and clock but faulty numbers, on rigs with an arm: the arm rotates the
+//! numbers before the loop uses them, but the force must be removed nevertheless.
 #![cfg(target_os = "linux")]
 use std::{
     net::UdpSocket,
@@ -35,21 +35,21 @@ use nima_tests::emulated::{at_tip, started_in};
 
 /// Time limit for the force after a sensor has begun to repeat itself, s.
 const GONE_S: f64 = 0.020;
-/// A block of 32 readings is told when it comes again, s.
+/// A block of 32 readings is detected when it is repeated, s.
 const BLOCK_GONE_S: f64 = 0.060;
-/// Least force in the hand when a fault begins, N.
+/// Minimum force in the hand when a fault begins, N.
 const FELT_N: f64 = 0.3;
-/// The sensor has changed for so long by then: after 3 s its rest is a fault.
+/// By then the sensor's readings have changed for long enough: after 3 s a constant reading is a fault.
 const BEFORE: Duration = Duration::from_millis(4500);
 const WAIT: Duration = Duration::from_secs(12);
-/// The middle of the swing of the example's sensor, N.
+/// The middle of the example sensor's oscillation, N.
 const MIDDLE_N: f64 = 1.0;
-/// Ticks that the loop may miss while it is judged.
+/// Ticks that the loop may miss during a judgement.
 const MISSED_MAX: u64 = 4;
 
 struct Bench {
     handle: Handle,
-    /// Of the sensor at the wrist; it is applied once the sensor is there.
+    /// For the sensor at the wrist; applied once the sensor is connected.
     calibrations: Option<Calibrations>,
     newest: Option<Tick>,
     ticks: Vec<Tick>,
@@ -98,7 +98,7 @@ impl Bench {
         false
     }
 
-    /// Engaged for a while, and with a force in the hand.
+    /// Waits until it is engaged for a while, with a force in the hand.
     fn engaged(&mut self) {
         let begin = Instant::now();
         while self.state() != LoopState::Engaged {
@@ -121,7 +121,7 @@ impl Bench {
         assert!(self.within(WAIT, |bench| bench.rendered_n() > FELT_N), "no force: {:?}", self.state());
     }
 
-    /// How long a force is in the hand after `begin`, s, and the fault that is raised.
+    /// Returns how long there is a force in the hand after `begin`, s, and the fault that is raised.
     fn after(&mut self, begin: impl FnOnce()) -> (f64, String) {
         self.look();
         let (at_s, missed) = self.newest.map(|tick| (tick.t_s, tick.missed)).unwrap();
@@ -138,7 +138,7 @@ impl Bench {
     }
 }
 
-/// Tries each fault `times` times; prints what happens.
+/// Tests each fault `times` times; prints the results.
 fn tried(name: &str, bench: &mut Bench, times: usize, set: impl Fn(EmulatedFault)) {
     for fault in EmulatedFault::OF_SENSORS {
         let mut gone_ms = Vec::new();
@@ -161,7 +161,7 @@ fn times() -> usize {
     std::env::var("NIMA_TIMES").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
 }
 
-/// The emulated rig, its right arm, with the sensor at this place.
+/// The emulated rig, its right arm, with the sensor at this location.
 fn emulated(folder: &Path, place: SensorPlace) -> (EmulatedRig, Plan) {
     let mut devices = at_tip(folder);
     devices = Settings { left: None, tissue_sensor: None, tracker: None, endoscope: None, pedal: None, ..devices };
@@ -198,7 +198,7 @@ fn an_emulated_sensor_that_repeats_itself_takes_the_force_away() {
 struct Example(Child);
 
 impl Example {
-    /// Compiled into this folder, or interpreted where there is no compiler.
+    /// Compiled into this folder, or interpreted if there is no compiler.
     fn start(name: &str, folder: &Path, ports: &[u16]) -> Self {
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/external").join(name);
         let program = folder.join(name);
@@ -223,7 +223,7 @@ impl Drop for Example {
     }
 }
 
-/// Stands between the example of a sensor and the console, and alters its numbers; stamps, sequence and checksum are right.
+/// Sits between the sensor example and the console, and alters its numbers; stamps, sequence and checksum are correct.
 struct Between {
     thread: Option<JoinHandle<()>>,
     ends: Arc<AtomicBool>,
@@ -266,7 +266,7 @@ impl Drop for Between {
     }
 }
 
-/// What an emulated sensor does wrong, for the example.
+/// Reproduces the faults of an emulated sensor for the example.
 #[derive(Default)]
 struct Spoiler {
     since: Vec<[f64; 13]>,
@@ -294,7 +294,7 @@ impl Spoiler {
     }
 }
 
-/// The rig of the guide, at these ports.
+/// The guide's rig, on these ports.
 fn external(ports: [u16; 3], place: SensorPlace) -> Plan {
     let guide =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/external-device.md")).unwrap();

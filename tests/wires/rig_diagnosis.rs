@@ -1,5 +1,5 @@
-//! Every device of an emulated rig is found in order; then each is made to fail, and the right cause and cure must be
-//! reported in time.
+//! Every device of an emulated rig is first diagnosed as in order; then each is made to fail, and the right cause and
+//! remedy must be reported in time.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -62,7 +62,7 @@ fn all_well(found: &[Diagnosis]) -> bool {
     found.iter().all(|one| match &one.outcome {
         Outcome::Trouble { .. } => false,
         Outcome::Connected(connected) => {
-            // Devices that are polled, or report changes only, have no rate of their own.
+            // Devices that are polled, or report only changes, have no inherent rate.
             let usual_hz = match one.name.as_str() {
                 "tracker" => Some(60.0),
                 "tissue sensor" => Some(800.0),
@@ -152,7 +152,7 @@ fn silence_and_faults_of_every_device_are_reported() {
         let rig = started(&devices);
         let all = |fault| {
             rig.servings().iter().for_each(|device| device.serving.faults.set(fault));
-            // An emulator that waits for its client checks its fault switch once a millisecond.
+            // An emulator that waits for its client checks its fault switch once per millisecond.
             std::thread::sleep(Duration::from_millis(20));
         };
         all(EmulatedFault::Silence);

@@ -1,5 +1,5 @@
-//! Right and left exchanged, place by place: at the wire where that is possible, else in the rig file. Each exchange must be told
-//! by name, with what to do, before any force; and where nothing is exchanged, nothing is told.
+//! Right and left swapped, one location at a time: on the wire where possible, otherwise in the rig file. Each swap
+//! must be reported by name, with the remedy, before any force; without a swap nothing must be reported.
 #![cfg(target_os = "linux")]
 use std::{
     path::Path,
@@ -24,7 +24,7 @@ use nima_tests::emulated::{at_tip, started};
 const TIMEOUT: Duration = Duration::from_secs(12);
 const DATE: &str = "2026-08-21T10:20:30Z";
 
-/// What is exchanged: at the wires (the devices as they stand there), in the rig file, or on the instruments.
+/// The swapped parts: on the wires (the devices themselves), in the rig file, or on the instruments.
 struct Row {
     place: &'static str,
     wire: fn(&mut Settings),
@@ -33,13 +33,12 @@ struct Row {
     told: Told,
 }
 
-/// Who tells it.
+/// How it is detected.
 enum Told {
-    /// The devices of these parts are not let in.
+    /// The devices of these parts are rejected.
     Kept(&'static [&'static str]),
-    /// The arms cannot be engaged.
     Obstacle(Exchange),
-    /// Nobody: the devices are found by themselves, and each is where it belongs.
+    /// Not at all: the devices are found automatically, and each is where it belongs.
     Harmless,
 }
 
@@ -51,7 +50,8 @@ fn sets(devices: &mut Settings) -> [&mut ArmSet; 2] {
     [devices.right.as_mut().unwrap(), devices.left.as_mut().unwrap()]
 }
 
-/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars stand beside each other.
+/// The built-in rig on other ports, with a tissue sensor of the wrist sensors' generation; its trocars are next to each
+/// other.
 fn rig(folder: &Path) -> Settings {
     let mut devices = at_tip(folder);
     let tissue = devices.tissue_sensor.as_mut().unwrap().bota_mut().unwrap();
@@ -62,7 +62,7 @@ fn rig(folder: &Path) -> Settings {
     devices
 }
 
-/// What hand-eye calibrations without error would write.
+/// The results of perfect hand-eye calibrations.
 pub(crate) fn hand_eye(set: &mut ArmSet, truth: &Truth) {
     let base = nima_core::kinematics::Arm::new(&set.mount).unwrap();
     let base = Isometry3::from_parts(base.world_from_base().translation, base.world_from_base().rotation.into());
@@ -73,7 +73,7 @@ pub(crate) fn hand_eye(set: &mut ArmSet, truth: &Truth) {
     set.base_from_c_deg = Some(to_roll_pitch_yaw_deg(&base_from_c.rotation));
 }
 
-/// The cables of right and left at each other's places: the device and its world stay, its address changes.
+/// Swaps the cables of right and left: the device and its world stay, its address changes.
 fn exchange_sensors(devices: &mut Settings) {
     let [right, left] = sets(devices);
     std::mem::swap(&mut right.sensor, &mut left.sensor);
@@ -178,7 +178,7 @@ fn rows() -> Vec<Row> {
         Row {
             wire: exchange_arms,
             file: nameless_arms,
-            ..row("cables of arms that nobody knows", Told::Obstacle(Exchange::Arms))
+            ..row("cables of unknown arms", Told::Obstacle(Exchange::Arms))
         },
         Row { wire: exchange_sensors, ..row("cables of the sensors", Told::Kept(&["right sensor", "left sensor"])) },
         Row {
@@ -236,7 +236,7 @@ fn rows() -> Vec<Row> {
     ]
 }
 
-/// A running machine, and what it has told.
+/// A running machine, and its reports.
 struct Machine {
     handle: Handle,
     healths: Healths,
@@ -257,7 +257,7 @@ impl Machine {
         Self { handle, healths, refusals: Vec::new(), engaged: false, most_n: 0.0, tick_count: 0 }
     }
 
-    /// Takes in what was sent, and asks for an engagement.
+    /// Processes its reports, and commands an engagement.
     fn look(&mut self) {
         std::thread::sleep(Duration::from_millis(10));
         let Self { handle, healths, refusals, engaged, most_n, tick_count } = self;
@@ -274,7 +274,7 @@ impl Machine {
             }
         });
         *healths = handle.healths().unwrap_or(*healths);
-        // On a busy machine a device may seem silent for a moment: whoever insists releases that too.
+        // On a busy machine a device may seem silent for a moment: releases that too.
         handle.send(if latched { Command::ReleaseStop } else { Command::Engage });
     }
 
@@ -370,7 +370,7 @@ fn right_and_left_exchanged_at_any_place_are_told_before_any_force() {
             let told = machine.told(&row);
             println!("{}: {told:?}", row.place);
             if !matches!(row.told, Told::Harmless) {
-                // Whoever insists gets nothing.
+                // Repeated commands have no effect.
                 let end = Instant::now() + Duration::from_millis(200);
                 while Instant::now() < end {
                     machine.look();

@@ -1,5 +1,5 @@
-//! The ready check over the wires tells right from left by what moves: the technician moves the right instrument, and its own arm
-//! and marker must follow. The rig has no hand-eye calibration, so nothing else can tell.
+//! The ready check over the wires distinguishes right and left by motion: the technician moves the right instrument,
+//! and its own arm and marker must follow. The rig has no hand-eye calibration, so nothing else can distinguish them.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -20,7 +20,7 @@ use nima_tests::emulated::{at_tip, started};
 const TIMEOUT: Duration = Duration::from_secs(40);
 const OWN: Check = Check::Own(Side::Right);
 
-/// What comes of the point, with the markers exchanged or not.
+/// Result of the item, with the markers swapped or not.
 fn found(are_exchanged: bool) -> State {
     let folder = tempfile::tempdir().unwrap();
     let devices = at_tip(folder.path());

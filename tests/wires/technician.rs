@@ -1,4 +1,4 @@
-//! The simulated technician at the emulated arms, over the wires: what he does is seen through the drivers only.
+//! The simulated technician at the emulated arms, over the wires: all actions are visible only through the drivers.
 //! `calibrate_rig::from_boxes_to_first_touch` (commands) does every calibration of both arms.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
@@ -20,9 +20,9 @@ use nima_simulation::{
 use nima_testing::real_time::{alone, judged};
 use nima_tests::emulated::{elsewhere, started};
 
-/// Poses that are taken at each arm.
+/// Number of poses at each arm.
 const POSES: usize = 3;
-/// An arm rests whose joints turn no further than this, rad, in this time, s.
+/// An arm rests if its joints rotate no further than this, rad, in this time, s.
 const STILL_RAD: f64 = 1e-4;
 const STILL_S: f64 = 0.3;
 
@@ -43,7 +43,7 @@ impl Bench {
         Self { rig, handle, newest: [None; SIDES] }
     }
 
-    /// Looks at every tick of a side until `good`; whether that came in time.
+    /// Reads every tick of a side until `good`; returns whether it came in time.
     pub(super) fn until(&mut self, side: Side, within: Duration, mut good: impl FnMut(&Self, &Tick) -> bool) -> bool {
         let begin = Instant::now();
         while begin.elapsed() < within {
@@ -65,7 +65,7 @@ impl Bench {
         self.rig.technician().reads(&Screen { side, task, prompt });
     }
 
-    /// Waits until nobody has moved the arm of this side for a while: who was called to it has carried it where he begins.
+    /// Waits until the arm of this side has not moved for a while: the technician has then carried it to the start.
     pub(super) fn rests(&mut self, side: Side) {
         let mut at_rad = [f64::INFINITY; ARM_JOINTS];
         let mut since_s = 0.0;
@@ -80,7 +80,7 @@ impl Bench {
         });
     }
 
-    /// Whether the instrument is through its trocar, as the loop sees it.
+    /// Whether the loop's state has the instrument through its trocar.
     fn is_in_trocar(tick: &Tick) -> bool {
         tick.wrist.as_ref().is_some_and(|sample| sample.insertion_m.is_some_and(|depth_m| depth_m > 0.0))
     }
@@ -112,7 +112,7 @@ fn the_technician_takes_poses_at_the_arm_that_is_calibrated_and_puts_the_instrum
             bench.show(side, Task::Surgery, Prompt::Rest);
             let back = bench.until(side, Duration::from_secs(20), |_, tick| Bench::is_in_trocar(tick));
             assert!(back, "{side:?}: the instrument is not in its trocar again");
-            // He has gone: the arm rests.
+            // The technician has left, so the arm rests.
             bench.rests(side);
         }
     });

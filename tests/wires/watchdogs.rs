@@ -1,5 +1,5 @@
-//! Watchdogs fired on purpose over the wires: the real levers of handle and arm are pulled, nothing is lost by it, and the arm engages
-//! afterwards as before.
+//! Watchdogs triggered on purpose over the wires: the real emergency releases of handle and arm are called, nothing is
+//! lost, and the arm engages afterwards as before.
 use std::time::{Duration, Instant};
 
 use nima_machine::{
@@ -11,7 +11,8 @@ use nima_simulation::{Plan, scene::Scene};
 use nima_testing::real_time::{alone, judged, too_busy};
 use nima_tests::emulated::{right_arm, started};
 
-/// Waits for such a tick; in a state without drives no force is commanded. A machine that is too busy for that is not judged.
+/// Waits for such a tick; in a state without drives no force may be commanded. On a machine that is too busy the test
+/// is not judged.
 fn until(handle: &Handle, what: &str, good: impl Fn(&Tick) -> bool) {
     let began = Instant::now();
     let mut newest = None;
@@ -42,13 +43,13 @@ fn every_watchdog_bites_in_idle_twice_and_the_arm_engages_afterwards() {
         let plan = Plan { rig: config, scene, calibrations: Default::default(), engage: false };
         let handle = nima_simulation::start(&plan).unwrap();
         let is = |state: LoopState| move |tick: &Tick| tick.state == state;
-        // It begins idle, before its devices are there.
+        // It starts idle, before its devices are connected.
         until(&handle, "a second of samples", |tick| tick.state == LoopState::Idle && tick.t_s > 2.0);
         for watchdog in Watchdog::ALL.into_iter().chain(Watchdog::ALL) {
             assert!(handle.send(Command::TestWatchdog(watchdog)));
             let bitten = |tick: &Tick| matches!(tick.state, LoopState::Faulted(fault) if watchdog.raises(fault));
             until(&handle, "its fault", bitten);
-            // What was withheld comes again.
+            // The withheld data resume.
             std::thread::sleep(Duration::from_millis(50));
             assert!(handle.send(Command::ReleaseStop));
             until(&handle, "released", is(LoopState::Idle));

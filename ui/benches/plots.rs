@@ -1,8 +1,8 @@
-//! What the traces cost the processor in a frame, without a window: 12 traces of 120 s at 2 kHz, our panel beside the same plots
-//! given every sample. Counted are layout, our own code and the making of triangles; drawing them is the graphics card's.
+//! Processor cost of the traces per frame, without a window: 12 traces of 120 s at 2 kHz, our panel compared with the same
+//! plots given every sample. Includes layout, our own code and the generation of triangles; the graphics card draws them.
 //!
-//! Prints ms per frame as percentiles of each of several runs, and the ratio of the medians; with `--ratios` only the ratio that
-//! `./dev bench` keeps. Everything is measured on this computer; nothing is asserted.
+//! Prints ms per frame as percentiles of each of several runs, and the ratio of the medians; with `--ratios` only the ratio
+//! that `./dev bench` stores. Everything is measured on this computer; nothing is asserted.
 
 #![expect(clippy::unwrap_used, reason = "a benchmark that cannot begin has nothing to say")]
 
@@ -29,7 +29,7 @@ const RUNS: usize = 5;
 const FRAMES: usize = 60;
 const SIZE: egui::Vec2 = vec2(1600.0, 1000.0);
 
-/// Contacts of a second with a tremor and the noise of a sensor, N.
+/// Contacts of one second with tremor and sensor noise, N.
 fn force_n(t_s: f64, channel: usize) -> f64 {
     let contact = (2.5 * (t_s * 1.3 + channel as f64).sin()).max(0.0);
     let noise = ((t_s * 7919.0 + channel as f64 * 31.0).sin() * 43_758.547).fract();
@@ -66,7 +66,7 @@ fn frame_ms(ctx: &Context, number: usize, content: &mut dyn FnMut(&mut Ui)) -> f
     frame_ms
 }
 
-/// A frame of our panel, twice: three plots with two traces for each hand. Gives its time, ms.
+/// A frame of our panel, twice: three plots with two traces for each hand. Returns its time, ms.
 fn ours() -> impl FnMut() -> f64 {
     let mut live = Live::new(RigConfig::load("simulated").unwrap(), Scene::load("bimanual").unwrap());
     let mut now_s = SECONDS;
@@ -91,7 +91,7 @@ fn ours() -> impl FnMut() -> f64 {
     }
 }
 
-/// A frame of the same twelve lines, every sample given to the plots. Gives its time, ms.
+/// A frame of the same twelve lines, with every sample given to the plots. Returns its time, ms.
 fn all_samples() -> impl FnMut() -> f64 {
     let count = (SECONDS * RATE_HZ) as u64;
     let lines: Vec<Vec<PlotPoint>> = (0..2 * CHANNELS)
@@ -125,12 +125,12 @@ fn all_samples() -> impl FnMut() -> f64 {
     }
 }
 
-/// Times of some runs of so many frames, ms.
+/// Times of some runs of this many frames, ms.
 fn runs(frames: usize, mut frame: impl FnMut() -> f64) -> Vec<Vec<f64>> {
     (0..RUNS).map(|_| (0..frames).map(|_| frame()).collect()).collect()
 }
 
-/// Prints the percentiles of each run; the median of all.
+/// Prints the percentiles of each run; returns the median of all.
 fn told(name: &str, runs: &[Vec<f64>]) -> f64 {
     let at = |sorted: &[f64], share: f64| sorted[((share * sorted.len() as f64) as usize).min(sorted.len() - 1)];
     let mut all = Vec::new();

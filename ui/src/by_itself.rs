@@ -1,37 +1,34 @@
-//! Whether a loop engages by itself at its start: the one place that decides it.
+//! Decides whether a loop engages automatically at its start. No other place decides it.
 //!
 //! Force is dangerous, so a person engages. There are two exceptions, both without a real device that renders force or moves:
-//! - the window, on the rigs `simulated` and `emulated` that come with the program, so that a newcomer sees them run. A rig file is a
-//!   user's own, whatever is in it: it waits for its ready check and for **Engage**;
-//! - `nima run`, because it is a command to run this rig, and nobody sits at it.
+//! - the window, on the built-in rigs `simulated` and `emulated`, so that a newcomer sees them run. A rig file belongs to a
+//!   user, whatever its content: it waits for its ready check and for **Engage**;
+//! - `nima run`, because it is a command to run this rig, without a person at a screen.
 //!
-//! Every other command starts an idle loop. An arm at another machine may be a real one, whatever the rig at this machine is. `Plan`
-//! ignores a wish to engage on a rig with real devices.
+//! Every other command starts an idle loop. An arm at another machine may be real, whatever the local rig is. `Plan` ignores
+//! a request to engage on a rig with real devices.
 
 use nima_machine::config::RigConfig;
 
 /// Rigs that the window engages.
 const BUILT_IN: [&str; 2] = ["simulated", "emulated"];
 
-/// What starts the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Starter {
-    /// `nima console`.
     Window,
-    /// `nima run`.
     Run,
 }
 
-/// Where the arm of the rig is.
+/// Location of the rig's arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Arm {
     Here,
-    /// At a `nima follower` on this machine, to try two machines.
+    /// At a `nima follower` on this machine, to try the two-machine setup.
     Loopback,
     Elsewhere,
 }
 
-/// Whether the loop of this rig, which was loaded by this name or path, engages by itself.
+/// Whether the loop of this rig, loaded by this name or path, engages automatically.
 pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: Arm) -> bool {
     let may = match (starter, arm) {
         (Starter::Window, Arm::Here) => BUILT_IN.contains(&name),
@@ -45,7 +42,6 @@ pub(crate) fn engages(starter: Starter, name: &str, rig: &RigConfig, arm: Arm) -
 mod tests {
     use super::*;
 
-    /// Which of these rigs engage by themselves.
     fn engaging(starter: Starter, arm: Arm, names: &[String]) -> Vec<String> {
         let engages = |name: &&String| engages(starter, name, &RigConfig::load(name).unwrap(), arm);
         names.iter().filter(engages).cloned().collect()
@@ -72,7 +68,7 @@ mod tests {
         .into();
         assert_eq!(engaging(Starter::Window, Arm::Here, &built_in), ["simulated", "emulated"]);
         assert_eq!(engaging(Starter::Window, Arm::Here, &files), [""; 0]);
-        // A command to run it is enough where nobody can be hurt.
+        // The command `nima run` is enough where no one can be hurt.
         assert_eq!(engaging(Starter::Run, Arm::Here, &built_in), ["simulated", "desk", "emulated"]);
         assert_eq!(engaging(Starter::Run, Arm::Here, &files), files[..4]);
     }

@@ -1,7 +1,7 @@
-//! Starts the emulators of an emulated rig in a process of their own, which ends with this one.
+//! Starts the emulators of an emulated rig in a separate process, which ends with this one.
 //!
-//! The loop reaches them through their devices only. Their standard input is for the technician, who reads what the screen
-//! shows, and on their standard output they tell what only a simulation knows.
+//! The loop reaches the emulators only through their devices. Their standard input carries the screen's instructions to the
+//! simulated technician; their standard output reports ground truth, which only a simulation has.
 
 use std::{
     io::{BufRead as _, BufReader, Write as _},
@@ -16,10 +16,10 @@ use nima_machine::rig::{SIDES, Settings, Side};
 
 use crate::{console::reader::Reader, extras};
 
-/// Before they serve, emulators of arms search a starting pose.
+/// Before they serve, the emulators of arms search for a start pose.
 const READY_WITHIN: Duration = Duration::from_mins(1);
 
-/// The process of the emulators; dropping this ends it.
+/// Process of the emulators; dropping this value ends it.
 #[derive(Debug)]
 pub(crate) struct Emulators {
     child: Child,
@@ -28,13 +28,13 @@ pub(crate) struct Emulators {
 }
 
 impl Emulators {
-    /// Starts the emulators if the rig of this name is emulated, around the scene of that name, and waits until they serve.
+    /// Starts the emulators if the rig of this name is emulated, with the scene of that name, and waits until they serve.
     pub(crate) fn start(rig: &str, scene: &str, devices: Option<&Settings>) -> anyhow::Result<Option<Self>> {
         let program = std::env::current_exe().context("cannot find the path of this program")?;
         Self::start_by(&program, rig, scene, devices)
     }
 
-    /// The same with this program; tests are not the program themselves.
+    /// Like [`Emulators::start`], with this program: a test binary is not the program itself.
     pub(crate) fn start_by(
         program: &Path,
         rig: &str,
@@ -63,7 +63,7 @@ impl Emulators {
         let Some(told) = self.child.stdout.take() else { return Ok(()) };
         let (line, lines) = std::sync::mpsc::channel();
         std::thread::spawn(move || {
-            // Continues to read until the end, because the emulators would block on a full pipe.
+            // Reads until the end, because the emulators would block on a full pipe.
             for text in BufReader::new(told).lines().map_while(Result::ok) {
                 line.send(text).ok();
             }
@@ -71,7 +71,8 @@ impl Emulators {
         for served in 0..devices {
             if lines.recv_timeout(READY_WITHIN).is_err() {
                 bail!(
-                    "only {served} of {devices} emulators of this rig have started; run `nima emulate rig` to see why"
+                    "only {served} of {devices} emulators of this rig have started; run `nima emulate rig` to \
+                     see the cause"
                 );
             }
         }
@@ -79,24 +80,24 @@ impl Emulators {
         Ok(())
     }
 
-    /// The technician, who reads the screen.
+    /// The simulated technician, who follows the screen.
     pub(crate) fn technician(&self) -> Reader {
         let input = Arc::clone(&self.input);
         Reader::new(move |screen| write(&input, &format!("screen {screen}")))
     }
 
-    /// From now on they tell the true forces at the tips, so many times a second.
+    /// Requests reports of the true tip forces at this rate.
     pub(crate) fn tell_truth(&self, rate_hz: u32) {
         write(&self.input, &format!("truth {rate_hz}"));
     }
 
-    /// What they told since the last call, line by line.
+    /// Lines reported since the last call.
     pub(crate) fn told(&self) -> impl Iterator<Item = String> {
         self.told.iter().flat_map(Receiver::try_iter)
     }
 }
 
-/// Writes a line; emulators that have ended are noticed by their devices.
+/// Writes a line. An error is ignored: the devices report emulators that have ended.
 fn write(input: &Mutex<Option<ChildStdin>>, line: &str) {
     if let Some(input) = &mut *input.lock().unwrap_or_else(PoisonError::into_inner) {
         writeln!(input, "{line}").and_then(|()| input.flush()).ok();
@@ -105,7 +106,7 @@ fn write(input: &Mutex<Option<ChildStdin>>, line: &str) {
 
 impl Drop for Emulators {
     fn drop(&mut self) {
-        // They end in order when their standard input ends.
+        // The emulators end in order when their standard input closes.
         drop(self.input.lock().unwrap_or_else(PoisonError::into_inner).take());
         for _ in 0..100 {
             if !matches!(self.child.try_wait(), Ok(None)) {

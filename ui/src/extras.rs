@@ -1,7 +1,7 @@
-//! What this program has beside the console itself. A feature of `Cargo.toml` leaves each out, and this file is the one place that knows which are
-//! here: an extra offers its parts through [`Extra`], and whoever needs a part asks for it by its kind.
+//! The optional parts of this program. A feature of `Cargo.toml` controls each of them, and only this file lists those in the
+//! build: an extra offers its parts through [`Extra`], and callers request a part by its kind.
 //!
-//! An extra has its files in one folder: `screen` is what the window shows of it, `text` and `words` are its texts.
+//! An extra has its files in one folder: `screen` is its part of the window, `text` and `words` are its texts.
 
 #[cfg(feature = "bridges")]
 mod bridges;
@@ -38,7 +38,6 @@ use crate::{
     watching::{Server, Show},
 };
 
-/// The extras of this build.
 const BUILT: &[&dyn Extra] = &[
     #[cfg(feature = "bridges")]
     &bridges::Bridges,
@@ -71,34 +70,34 @@ const COMMANDS: [(&str, &str); 9] = [
     ("user-study", "user-studies"),
 ];
 
-/// The parts that an extra may offer.
+/// Parts that an extra can offer.
 pub(crate) trait Extra: Sync {
     /// Adds its commands to the command line.
     fn commands(&self, line: clap::Command) -> clap::Command {
         line
     }
 
-    /// Runs the command that was given; `None` if it is not one of this extra's.
+    /// Runs the given command; `None` if the command does not belong to this extra.
     fn run(&self, _given: &ArgMatches) -> Option<anyhow::Result<()>> {
         None
     }
 
-    /// Runs a command of `nima department`.
     fn department(&self, _command: &DepartmentCommand) -> Option<anyhow::Result<()>> {
         None
     }
 
-    /// Lets others watch in this way at this address.
+    /// Serves viewers of this kind at this address.
     fn server(&self, _show: Show, _at: SocketAddr) -> Option<anyhow::Result<Box<dyn Server>>> {
         None
     }
 
-    /// Sends marks of what happens over the Lab Streaming Layer, by this file of liblsl or [the installed one](crate::watching::INSTALLED).
+    /// Sends event marks over the Lab Streaming Layer, with this file of liblsl or [the installed
+    /// one](crate::watching::INSTALLED).
     fn marks(&self, _library: &Path) -> Option<anyhow::Result<Box<dyn Server>>> {
         None
     }
 
-    /// The way to a machine with the arm.
+    /// Connection to a machine with the arm.
     fn way(&self) -> Option<&'static dyn Way> {
         None
     }
@@ -106,32 +105,31 @@ pub(crate) trait Extra: Sync {
     /// Called once, before any command runs.
     fn begin(&self) {}
 
-    /// Compares forces with the true ones, which the command `emulate` of this extra tells.
+    /// Compares forces with the true forces, which this extra's command `emulate` reports.
     fn comparison(&self) -> Option<Box<dyn Comparison>> {
         None
     }
 
-    /// The wizard of the endoscope's camera.
     fn camera_wizard(&self) -> Option<fn() -> Box<dyn Wizard>> {
         None
     }
 
-    /// A page of the window that holds the machine while it is used.
+    /// A page of the window that reserves the machine while it is open.
     fn page(&self) -> Option<fn() -> Box<dyn Page>> {
         None
     }
 
-    /// The panel of computing time against accuracy.
+    /// The Trade-off panel.
     fn tradeoff(&self) -> Option<fn() -> Box<dyn Tile>> {
         None
     }
 
-    /// The strip below the gain slider: up to which gain a gripping hand is stable.
+    /// The strip below the gain slider that shows the highest gain at which a gripping hand is stable.
     fn stable_gain(&self) -> Option<StripUi> {
         None
     }
 
-    /// Scores the run of a plan with a task; `watched` tells what happens to the objects.
+    /// Scores the run of a plan with a task; `watched` reports the events of the objects.
     fn scorer(&self, _plan: &Plan, _watched: &mut Option<Watched>) -> Option<anyhow::Result<Box<dyn Scorer>>> {
         None
     }
@@ -147,25 +145,23 @@ pub(crate) fn emulates() -> bool {
     part(Extra::comparison).is_some()
 }
 
-/// Lets every extra begin, before any command runs.
 pub(crate) fn begin() {
     for extra in BUILT {
         extra.begin();
     }
 }
 
-/// The command line with the commands of the extras.
+/// Adds the commands of all extras.
 pub(crate) fn commands(line: clap::Command) -> clap::Command {
     BUILT.iter().fold(line, |line, extra| extra.commands(line))
 }
 
-/// The command that a command line gives, if it is one of these.
 pub(crate) fn given<C: Subcommand>(matches: &ArgMatches) -> Option<Result<C, clap::Error>> {
     let (name, _) = matches.subcommand()?;
     C::has_subcommand(name).then(|| C::from_arg_matches(matches))
 }
 
-/// Why this command is unknown, if another build has it and this command line nowhere does.
+/// Error for a command that another build has and this command line has nowhere.
 pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow::Error> {
     fn has(line: &clap::Command, name: &str) -> bool {
         line.get_subcommands().any(|command| command.get_name() == name || has(command, name))
@@ -174,7 +170,7 @@ pub(crate) fn absent_command(line: &clap::Command, name: &str) -> Option<anyhow:
     (!has(line, name)).then(|| not_built(&format!("command `{name}`"), feature))
 }
 
-/// What is told of a part that another build has.
+/// Error for a part that another build has.
 pub(crate) fn not_built(what: &str, feature: &str) -> anyhow::Error {
     anyhow::anyhow!(
         "this build has no {what}; build it with `cargo build --release --locked -p nima-console --features {feature}`"
@@ -199,7 +195,7 @@ mod tests {
         Calibrate,
     }
 
-    /// A build without an extra can only name the feature of a command that is listed.
+    /// A build without an extra can name the feature only of a listed command.
     #[test]
     fn every_command_of_an_extra_is_listed() {
         let line = commands(Own::command());

@@ -1,8 +1,8 @@
 //! The language of the window.
 //!
-//! Every text of the window stands in `console/text` and `words`, in English and German side by side: a text that lacks one of them does
-//! not compile. The language belongs to a thread. The window sets that of its own before it draws; every other thread, and with it the
-//! command line, the files and the reports, writes English unless it is told otherwise ([`carried`]).
+//! All texts of the window are in `console/text` and `words`, in English and German side by side: a text without one of them
+//! does not compile. Each thread has its language. The window sets the language of its thread before it draws; every other
+//! thread, and therefore the command line, the files and the reports, uses English unless its language is set ([`carried`]).
 
 use std::{
     cell::{Cell, RefCell},
@@ -13,29 +13,27 @@ use std::{
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
-/// A language of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 pub enum Language {
-    /// English, in which everything was written first.
+    /// The default.
     #[default]
     #[serde(rename = "en")]
     #[value(name = "en")]
     English,
-    /// German.
     #[serde(rename = "de")]
     #[value(name = "de")]
     German,
-    /// English with accents, and longer by two fifths: a layout with room for it has room for most languages.
+    /// English with accents and 40 % longer: a layout with room for it has room for most languages.
     #[serde(rename = "pseudo")]
     #[value(name = "pseudo", hide = true)]
     Pseudo,
 }
 
 impl Language {
-    /// Those that a user chooses among.
+    /// Languages that a user can choose.
     pub const CHOICES: [Self; 2] = [Self::English, Self::German];
 
-    /// Its name in itself.
+    /// The language's own name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::English => "English",
@@ -50,17 +48,15 @@ thread_local! {
     static LENGTHENED: RefCell<HashMap<&'static str, &'static str>> = RefCell::default();
 }
 
-/// The language of this thread.
 pub fn current() -> Language {
     CURRENT.get()
 }
 
-/// Sets the language of this thread.
 pub fn set(language: Language) {
     CURRENT.set(language);
 }
 
-/// Does this in a language: what is written into a file is English, whatever the window shows.
+/// Runs `work` in a language. Files are written in English, whatever the language of the window.
 pub fn with<T>(language: Language, work: impl FnOnce() -> T) -> T {
     struct Back(Language);
     impl Drop for Back {
@@ -72,7 +68,7 @@ pub fn with<T>(language: Language, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// The same work for another thread, which then has the language of this one.
+/// Wraps `work` for another thread, which then uses the language of this thread.
 pub(crate) fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
     let language = current();
     move || {
@@ -89,12 +85,11 @@ pub struct Text {
 }
 
 impl Text {
-    /// The same in English and in German.
     pub(crate) const fn of(english: &'static str, german: &'static str) -> Self {
         Self { english, german }
     }
 
-    /// In the language of this thread.
+    /// The text in the language of this thread.
     pub fn get(self) -> &'static str {
         match current() {
             Language::English => self.english,
@@ -115,7 +110,7 @@ pub(crate) fn word(english: &'static str, german: &'static str) -> &'static str 
     Text::of(english, german).get()
 }
 
-/// A text with values in it: `told!("{a} of {b}", "{a} von {b}")`, and further arguments as for `format!`.
+/// A text with values: `told!("{a} of {b}", "{a} von {b}")`, with further arguments as for `format!`.
 macro_rules! told {
     ($english:literal, $german:literal $(, $($argument:tt)*)?) => {
         if $crate::language::current() == $crate::language::Language::German {
@@ -127,30 +122,29 @@ macro_rules! told {
 }
 pub(crate) use told;
 
-/// An English text with its values in it, as it is or lengthened.
 pub(crate) fn plain_or_pseudo(english: String) -> String {
     if current() == Language::Pseudo { pseudo(&english) } else { english }
 }
 
-/// A constant text is lengthened once in a thread, and stays in memory.
+/// Each constant text is lengthened once per thread and stays in memory.
 fn lengthened(english: &'static str) -> &'static str {
     LENGTHENED.with_borrow_mut(|known| *known.entry(english).or_insert_with(|| pseudo(english).leak()))
 }
 
-/// With accents, and two fifths longer. What is so already stays: a text may stand in another one.
+/// Adds accents and 40 % length. Text that is already lengthened stays unchanged, because a text may be part of another text.
 pub fn pseudo(english: &str) -> String {
     let lines: Vec<String> = english.split('\n').map(pseudo_line).collect();
     lines.join("\n")
 }
 
 fn pseudo_line(line: &str) -> String {
-    // What has accents was lengthened before.
+    // Words with accents were lengthened before.
     let is_plain = |word: &&str| word.chars().all(|letter| letter.is_ascii() || !letter.is_alphabetic());
     let plain = line.split_whitespace().filter(is_plain);
     let letters = plain.flat_map(str::chars).filter(char::is_ascii_alphabetic).count();
     let mut longer: String = line.chars().map(accented).collect();
     let one_word = !line.trim().contains(' ');
-    // In words of usual length, so that a line breaks where others do.
+    // Adds words of usual length, so that lines break as in other languages.
     for (i, letter) in
         "\u{e5}\u{f1}\u{f0}\u{f8}\u{fe}\u{eb}".chars().cycle().take((2 * letters).div_ceil(5)).enumerate()
     {
@@ -162,7 +156,7 @@ fn pseudo_line(line: &str) -> String {
     longer
 }
 
-/// A letter that looks like this one and is as wide.
+/// A letter of similar look and width.
 const fn accented(letter: char) -> char {
     match letter {
         'A' => '\u{c5}',

@@ -1,7 +1,7 @@
 //! Orderly end of the program on Ctrl-C, SIGTERM, SIGHUP, or when a parent process closes standard input.
 //!
-//! Long-running code checks [`Leave::is_asked`] and ends. What must not wait for that, such as an engaged arm, is ended
-//! immediately through [`Leave::at_once`].
+//! Long-running code checks [`Leave::is_asked`] and ends. [`Leave::at_once`] stops anything that must not wait for that
+//! check, such as an engaged arm.
 
 use std::{
     io,
@@ -14,7 +14,7 @@ use std::{
 
 use anyhow::Context as _;
 
-/// Whether this process has been asked to end. Clones share the same state.
+/// Request to end this process. Clones share the same state.
 #[derive(Clone, Default)]
 pub struct Leave(Arc<Asked>);
 
@@ -25,10 +25,9 @@ struct Asked {
 }
 
 impl Leave {
-    /// Reacts to Ctrl-C, SIGTERM and SIGHUP; may be called once in a process.
+    /// Reacts to Ctrl-C, SIGTERM and SIGHUP. Call it at most once per process.
     ///
-    /// # Errors
-    /// If the operating system does not allow a signal handler.
+    /// # Errors Returns an error if the operating system rejects a signal handler.
     pub fn on_signals() -> anyhow::Result<Self> {
         let leave = Self::default();
         let asked = leave.clone();
@@ -36,8 +35,8 @@ impl Leave {
         Ok(leave)
     }
 
-    /// Reacts also to the end of standard input. A parent process holds its other end without writing; it closes when
-    /// the parent ends for whatever reason.
+    /// Also reacts to the end of standard input. A parent process holds the other end without writing; it closes when the
+    /// parent ends for any reason.
     pub fn with_input(&self) {
         let asked = self.clone();
         thread::spawn(move || {
@@ -46,24 +45,20 @@ impl Leave {
         });
     }
 
-    /// Asks the process to end.
     pub fn ask(&self) {
         self.0.flag.store(true, Ordering::Release);
         self.act();
     }
 
-    /// Whether the process has been asked to end.
     pub fn is_asked(&self) -> bool {
         self.0.flag.load(Ordering::Acquire)
     }
 
-    /// The same state as a flag.
     pub fn flag(&self) -> &AtomicBool {
         &self.0.flag
     }
 
-    /// Sets a function that is called on another thread as soon as the process is asked to end; it replaces the
-    /// previous one.
+    /// Sets a function that is called on another thread as soon as the end is requested. It replaces the previous one.
     pub fn at_once(&self, act: impl Fn() + Send + 'static) {
         *self.lock() = Some(Box::new(act));
         if self.is_asked() {

@@ -1,4 +1,4 @@
-//! The objects of a simulated scene, as a session and the screen have them.
+//! The objects of a simulated scene, converted for sessions and the screen.
 
 use nalgebra::{Isometry3, Translation3};
 use nima_core::task::Happening;
@@ -6,7 +6,7 @@ use nima_machine::rig::{SIDES, Side};
 use nima_session::objects::{Jaws, Mark, ObjectSource, Objects, Standing, WireLoop};
 use nima_simulation::{LoopSeen, MARKS_MAX, Moment, Plan, Training, Watched};
 
-/// A simulation tells its recording of its objects.
+/// Reports the objects of a simulation to its recording.
 #[derive(Debug)]
 pub(crate) struct OfSimulation {
     watched: Watched,
@@ -14,7 +14,6 @@ pub(crate) struct OfSimulation {
 }
 
 impl OfSimulation {
-    /// Of the simulation of this plan.
     pub(crate) fn source(plan: &Plan, watched: Watched) -> Box<dyn ObjectSource> {
         let has_jaws = plan.scene.objects.is_some();
         Box::new(Self { watched, jaws: Side::ALL.map(|side| has_jaws && plan.has(side)) })
@@ -31,7 +30,6 @@ impl ObjectSource for OfSimulation {
     }
 }
 
-/// What a simulation tells of a moment; which instruments have jaws is known.
 pub(crate) fn objects(moment: &Moment, has_jaws: [bool; SIDES]) -> Objects {
     let Moment { t_s, rings, opening_rad, loads, training } = moment;
     let known = rings.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
@@ -53,7 +51,7 @@ pub(crate) fn objects(moment: &Moment, has_jaws: [bool; SIDES]) -> Objects {
     Objects { t_s: *t_s, rings: rings.collect(), jaws, task: Some(standing(training)) }
 }
 
-/// How far a task has come, as a session has it.
+/// Progress of a task, as a session stores it.
 fn standing(training: &Training) -> Standing {
     let Training { ended, marks, marked, found, loops, touches, share, passed, placed, dropped } = *training;
     let seen = |LoopSeen { touches, on_wire }| WireLoop { touches, on_wire };
@@ -62,7 +60,7 @@ fn standing(training: &Training) -> Standing {
     Standing { ended, share, marked, found, touches, passed, placed, dropped, loops: loops.map(seen), marks }
 }
 
-/// The same as the screen has it.
+/// Progress of a task, as the screen shows it.
 pub(crate) fn training(standing: &Standing) -> Training {
     let Standing { ended, share, marked, found, touches, passed, placed, dropped, loops, ref marks } = *standing;
     let mut all = [None; MARKS_MAX];

@@ -1,4 +1,4 @@
-//! The endoscope's pictures on their way into a session.
+//! Endoscope images on their way to a session.
 
 use std::time::Instant;
 
@@ -9,14 +9,14 @@ use nima_session::{
     recorder::Recorder,
 };
 
-/// Hands the pictures of a reel to a recording.
+/// Passes the images of a queue to a recording.
 #[derive(Debug)]
 struct OfEndoscope(ReelEnd);
 
 impl PictureSource for OfEndoscope {
     fn picture(&mut self) -> Option<Taken> {
         let Compressed { format, bytes, arrived, stamp_s, .. } = self.0.take()?;
-        // A reel has nothing that is not compressed.
+        // The queue contains only compressed images.
         let coding = if matches!(format, Format::H264 { .. }) { Coding::H264 } else { Coding::Jpeg };
         Some(Taken { arrived, camera_s: stamp_s, coding, data: bytes })
     }
@@ -26,28 +26,28 @@ impl PictureSource for OfEndoscope {
     }
 }
 
-/// The rig has an endoscope whose picture is recorded.
+/// Whether the rig has an endoscope whose images are recorded.
 pub(crate) fn are_recorded(rig: &RigConfig) -> bool {
     rig.endoscope.as_ref().is_some_and(|endoscope| endoscope.record)
 }
 
-/// Lets the recording of a loop on this rig take the pictures of this reel, if they are to be recorded.
+/// Lets the recording of a loop on this rig take the images of this queue, if they are to be recorded.
 pub(crate) fn film(recorder: &Recorder, rig: &RigConfig, reel: &Reel) {
     if are_recorded(rig) {
         recorder.film(Box::new(OfEndoscope(reel.end())));
     }
 }
 
-/// Reads the pictures for a recording, or for who watches: nobody shows them here.
+/// Reads the images for a recording or for viewers, without showing them.
 #[derive(Debug)]
 pub(crate) struct Filming {
     feed: Option<Feed>,
-    /// Why there are none.
+    /// Reason why there are no images.
     refused: Option<String>,
 }
 
 impl Filming {
-    /// Begins to put the pictures of this rig into this reel; the recording, if one is given, takes them if they are to be recorded.
+    /// Starts to put the images of this rig into this queue; the recording, if given, takes them if they are to be recorded.
     pub(crate) fn start(recorder: Option<&Recorder>, rig: &RigConfig, reel: &Reel) -> Option<Self> {
         let endoscope = rig.endoscope.as_ref()?;
         let size_px = endoscope.camera.map(|camera| camera.size_px);
@@ -67,7 +67,7 @@ impl Filming {
         Some(Self { feed, refused })
     }
 
-    /// Why no pictures are recorded now.
+    /// Reason why no images are recorded now.
     pub(crate) fn trouble(&self) -> Option<String> {
         let lost = || match self.feed.as_ref()?.standing(Instant::now()) {
             Standing::Lost(trouble) => Some(format!("{trouble}: {}", trouble.cure())),

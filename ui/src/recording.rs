@@ -1,4 +1,4 @@
-//! Recording what a loop does: begins a session file for a plan, whoever runs it.
+//! Starts the session file of a plan, for every command that runs a loop.
 
 use std::{
     collections::BTreeMap,
@@ -19,21 +19,19 @@ use crate::words::{event, happening, operation};
 /// Texts of the log.
 pub(crate) const WORDS: Words = Words { event, operation, happening };
 
-/// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("nima ", env!("CARGO_PKG_VERSION"));
 
-/// Names of the attached files: rig and scene.
+/// Name of the attached rig file.
 pub(crate) const RIG: &str = "rig.toml";
-/// See [`RIG`].
+/// Name of the attached scene file.
 pub(crate) const SCENE: &str = "scene.toml";
 
-/// A file to attach.
 pub(crate) fn toml_file(name: &str, text: String) -> Attached {
     Attached { name: name.to_owned(), media_type: "application/toml".to_owned(), data: text.into_bytes() }
 }
 
-/// Begins to record a loop of this plan: the tap is for its [`nima_machine::runtime::Assembly`]. `clock` is the
-/// virtual clock on which it runs, `None` on the real one.
+/// Starts the recording of a loop of this plan; the tap is for its [`nima_machine::runtime::Assembly`]. `clock`: the virtual
+/// clock, `None` for the real one.
 pub(crate) fn begin(
     to: Destination<'_>,
     plan: &Plan,
@@ -61,12 +59,12 @@ fn about(plan: &Plan, clock: Option<VirtualClock>) -> About {
         ("mode", rig.mode.to_string()),
         ("delay_s", rig.delay_s.to_string()),
     ];
-    // A replay needs neither: the times of the ticks are in the journal.
+    // A replay needs neither: the journal contains the times of the ticks.
     let late = clock.filter(|clock| clock.profile != ClockProfile::Perfect);
     let late = late.map(|clock| [("clock_profile", clock.profile.to_string()), ("clock_seed", clock.seed.to_string())]);
     let session = session.into_iter().chain(late.into_iter().flatten());
     let session = session.map(|(key, value)| (key.to_owned(), value)).collect();
-    // As they are in force, with what the command line changed.
+    // The active settings, including changes from the command line.
     let texts = [(RIG, toml::to_string(rig)), (SCENE, toml::to_string(scene))];
     let file = |(name, text): (&str, Result<String, _>)| Some(toml_file(name, text.ok()?));
     About {

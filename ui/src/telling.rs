@@ -1,4 +1,4 @@
-//! Messages on stderr. If stderr is closed they are lost; that must not cause a panic.
+//! Messages on stderr. They are lost if stderr is closed, without a panic.
 
 use std::{
     fmt::Display,

@@ -1,4 +1,5 @@
-//! The loop's force at the tip beside the true one, which emulators tell from their own process. What compares the two is an extra.
+//! Comparison of the loop's tip force with the true force that the emulators report from their process. An extra implements
+//! it.
 
 use std::{
     fmt::Debug,
@@ -7,22 +8,22 @@ use std::{
 
 use nima_machine::messages::Tick;
 
-/// The time of day, s since 1970.
+/// Time of day, s since 1970.
 pub(crate) fn now_s() -> f64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64())
 }
 
-/// Compares ticks with what emulators tell about them.
+/// Compares ticks with the ground truth of the emulators.
 pub(crate) trait Comparison: Debug {
-    /// Adds a tick that is seen at this time of day, s.
+    /// Adds a tick that was received at this time of day, s.
     fn tick(&mut self, tick: &Tick, seen_s: f64);
 
-    /// Adds what the emulators told since the last call, line by line, and compares what can be compared by now.
+    /// Adds the lines that the emulators reported since the last call, and compares all ticks that are now complete.
     fn hear(&mut self, told: &mut dyn Iterator<Item = String>);
 
-    /// The figures, as they are printed.
+    /// The results for JSON output.
     fn figures(&self) -> Vec<serde_json::Value>;
 
-    /// The figures as a table, which begins with a line break; empty without figures.
+    /// The results as a table that starts with a line break; empty without results.
     fn in_words(&self) -> String;
 }

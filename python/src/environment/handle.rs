@@ -1,32 +1,32 @@
-//! The simulated worlds, with the handle of one side in the hand of a controller outside.
+//! The simulated worlds, with the handle of one side controlled from outside.
 
 use nalgebra::Vector3;
 use nima_core::kinematics::Hand;
 use nima_machine::rig::{Inputs, Outputs, Rig, SIDES, Side};
 use nima_simulation::{Worlds, scene::Leader};
 
-/// A controller moves the handle no faster, m/s: the loop takes more for a jump.
+/// Maximum speed at which a controller moves the handle, m/s: the loop treats faster motion as a jump.
 pub(super) const FASTEST_M_S: f64 = 1.0;
 
-/// Who holds the handle.
+/// Who controls the handle.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Holder {
     /// The simulated hand of the scene.
     Scene,
-    /// Somebody who places it: where it is, and where it shall be after so many ticks.
+    /// A controller that sets the position: the current one, and the target after a number of ticks.
     Placed {
-        /// Place, m.
+        /// Current position, m.
         at_m: Vector3<f64>,
-        /// Where it shall be, m.
+        /// Target position, m.
         to_m: Vector3<f64>,
-        /// Ticks left.
+        /// Remaining ticks.
         ticks: u32,
     },
-    /// Somebody who pushes it: it moves as the mass of hand and handle under this force and that of the motors.
+    /// A controller that applies a force: the handle moves as the mass of hand and handle under this force and the
+    /// motors' force.
     Pushed {
-        /// Place, m.
+        /// Position, m.
         at_m: Vector3<f64>,
-        /// Speed, m/s.
         speed_m_s: Vector3<f64>,
         /// Force of the controller on the handle, N.
         force_n: Vector3<f64>,
@@ -42,7 +42,7 @@ pub(super) struct Handled {
     mass_kg: f64,
     period_s: f64,
     motors_n: Vector3<f64>,
-    /// What was measured last on this side.
+    /// The last measurements of this side.
     pub(super) seen: Option<Inputs>,
 }
 
@@ -53,7 +53,7 @@ impl Handled {
         Self { worlds, side, holder, leader, mass_kg, period_s, motors_n, seen: None }
     }
 
-    /// Place of the handle, m, if a controller has it.
+    /// Position of the handle, m, if a controller has it.
     pub(super) const fn at_m(&self) -> Option<Vector3<f64>> {
         match self.holder {
             Holder::Scene => None,
@@ -61,7 +61,7 @@ impl Handled {
         }
     }
 
-    /// One period of the handle's motion.
+    /// Simulates one period of the handle's motion.
     fn go_on(&mut self) {
         let period_s = self.period_s;
         match &mut self.holder {
@@ -74,7 +74,7 @@ impl Handled {
                 *ticks = ticks.saturating_sub(1).max(1);
             }
             Holder::Pushed { at_m, speed_m_s, force_n } => {
-                // Semi-implicit Euler, as the simulated hand.
+                // Semi-implicit Euler, like the simulated hand.
                 *speed_m_s += (*force_n + self.motors_n) * (period_s / self.mass_kg);
                 if speed_m_s.norm() > FASTEST_M_S {
                     *speed_m_s *= FASTEST_M_S / speed_m_s.norm();
@@ -84,7 +84,7 @@ impl Handled {
         }
     }
 
-    /// As the device reads it.
+    /// Returns the position as read by the device.
     fn read_m(&self, at_m: Vector3<f64>) -> Vector3<f64> {
         self.leader.map_or(at_m, |leader| at_m.map(|x| (x / leader.resolution_m).round() * leader.resolution_m))
     }

@@ -1,20 +1,20 @@
-//! A link that can also deliver a force that somebody outside asks for.
+//! A link that can also deliver a force requested by an external controller.
 
 use nalgebra::Vector3;
 use nima_core::impedance::Parcel;
 use nima_machine::teleop::{Link, ProgrammedLink};
 
-/// The programmed link; while somebody outside renders, a parcel with that force in place of the newest one. In the mode `dfr` it is what the
-/// gates are asked for, and nothing passes around them.
+/// The programmed link. While an external controller renders, a packet with the requested force replaces the newest
+/// one. In the mode `dfr` it is the force requested from the gates, and nothing bypasses them.
 #[derive(Debug)]
 pub(super) struct OwnLink {
     under: ProgrammedLink,
     delay_s: f64,
-    /// The force that somebody outside asks for, N, and the parcel that it is in.
+    /// The force requested by the external controller, N, and the packet that contains it.
     asked_n: Option<Vector3<f64>>,
     own: Parcel,
     turned: bool,
-    /// What the link itself delivered last, N.
+    /// The force last delivered by the link itself, N.
     pub(super) delayed_n: Option<Vector3<f64>>,
 }
 
@@ -25,7 +25,7 @@ impl OwnLink {
         Self { under, delay_s, asked_n: None, own, turned: false, delayed_n: None }
     }
 
-    /// From now on this force is asked for, N.
+    /// Requests this force from now on, N.
     pub(super) const fn ask(&mut self, force_n: Vector3<f64>) {
         self.asked_n = Some(force_n);
     }
@@ -49,8 +49,8 @@ impl Link for OwnLink {
         let delivered = self.under.receive(now_s);
         self.delayed_n = delivered.map(|parcel| parcel.force_n);
         let Some(asked_n) = self.asked_n else { return self.under.receive(now_s) };
-        // The watch for a line that is frozen takes numbers that repeat themselves to the last bit for one. This is no line: a force that a
-        // controller holds may repeat itself, so its last bit goes to and fro.
+        // The detector of frozen lines triggers on numbers that repeat to the last bit. A controller may hold its force
+        // constant, so its last bit alternates.
         self.turned = !self.turned;
         self.own.force_n = if self.turned { asked_n.map(f64::next_up) } else { asked_n };
         self.own.t_s = now_s - self.delay_s;

@@ -19,7 +19,7 @@ use pyo3::{prelude::*, types::PyDict};
 use self::running::{Action, Known, Running};
 use crate::errors::{guarded, value};
 
-/// What a controller outside controls.
+/// The quantity that an external controller sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
     Nothing,
@@ -54,7 +54,7 @@ pub(crate) struct Simulation {
     running: Option<Running>,
 }
 
-/// Most ticks of a step.
+/// Maximum number of ticks of a step.
 const SUBSTEPS_MAX: u32 = 100_000;
 
 #[pymethods]
@@ -111,19 +111,19 @@ impl Simulation {
         self.plan.rig.rate_hz
     }
 
-    /// Largest force of the gates, N.
+    /// Force limit of the gates, N.
     #[getter]
     fn ceiling_n(&self) -> f64 {
         self.plan.rig.gates.ceiling_n
     }
 
-    /// The delay of the link, s.
+    /// Delay of the link, s.
     #[getter]
     fn delay_s(&self) -> f64 {
         self.plan.rig.delay_s
     }
 
-    /// The mode in force.
+    /// The active mode.
     #[getter]
     fn mode(&self) -> &'static str {
         self.plan.rig.mode.name()
@@ -135,11 +135,11 @@ impl Simulation {
         self.has_jaws
     }
 
-    /// Widest opening of the gripper, rad.
+    /// Maximum opening of the gripper, rad.
     #[classattr]
     const GRIP_MAX_RAD: f64 = GRIP_MAX_RAD;
 
-    /// Begins anew, and runs until the arm is engaged.
+    /// Restarts, and runs until the arm is engaged.
     fn reset<'py>(&mut self, py: Python<'py>, seed: Option<u64>) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
         let mut plan = self.plan.clone();
         if let Some(seed) = seed {
@@ -156,7 +156,7 @@ impl Simulation {
         Ok((observation(py, &known)?, info(py, &known)?))
     }
 
-    /// One step: observation, what is known besides, and whether the loop still runs.
+    /// One step: observation, additional information, and whether the loop is still running.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -170,7 +170,7 @@ impl Simulation {
         Ok((observation(py, &known)?, info(py, &known)?, known.tick.state == LoopState::Engaged))
     }
 
-    /// The score as JSON; `None` in a scene without a task, or if it was asked for already.
+    /// The score as JSON; `None` in a scene without a task, or after the first call.
     fn score(&mut self) -> PyResult<Option<String>> {
         let score = self.running.as_mut().and_then(Running::end);
         score.map(|score| serde_json::to_string(&score).map_err(value)).transpose()
@@ -203,7 +203,7 @@ fn array<'py>(py: Python<'py>, vector: &Vector3<f64>) -> Bound<'py, PyArray1<f64
     PyArray1::from_slice(py, vector.as_slice())
 }
 
-/// What a controller at the leader can know.
+/// The information available to a controller at the leader.
 fn observation<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let vectors = [
@@ -220,7 +220,7 @@ fn observation<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDic
     Ok(all)
 }
 
-/// What is known besides.
+/// Additional information.
 fn info<'py>(py: Python<'py>, known: &Known) -> PyResult<Bound<'py, PyDict>> {
     let tick = &known.tick;
     let all = PyDict::new(py);

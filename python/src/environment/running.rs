@@ -20,23 +20,23 @@ use super::{
 
 /// The side that a controller gets.
 pub(super) const SIDE: Side = Side::Right;
-/// Longest time until the pair is engaged, s.
+/// Maximum time until the pair is engaged, s.
 const ENGAGED_WITHIN_S: f64 = 5.0;
 
-/// What a controller outside does in a step.
+/// Action of an external controller in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Action {
-    /// Nothing: the scene's hand holds the handle, and a mode renders.
+    /// None: the scene's hand holds the handle, and a mode renders.
     Watch,
-    /// Places the handle, m.
+    /// Sets the position of the handle, m.
     Place(Vector3<f64>),
-    /// Pushes the handle, N.
+    /// Applies a force to the handle, N.
     Push(Vector3<f64>),
-    /// Asks for this force in the hand, N, in place of a mode.
+    /// Requests this force in the hand, N, instead of a mode's.
     Render(Vector3<f64>),
 }
 
-/// What is known after a step.
+/// Information after a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub(super) tick: Tick,
@@ -51,7 +51,6 @@ pub(super) struct Known {
     pub(super) training: Option<Training>,
 }
 
-/// A run.
 pub(super) struct Running {
     control: Loop<OwnLink>,
     rig: Handled,
@@ -60,7 +59,7 @@ pub(super) struct Running {
     trial: Option<LiveTrial>,
     ticks: u64,
     period_s: f64,
-    /// Tips until one delay ago, the oldest first, m.
+    /// Positions of the tip until one delay ago, the oldest first, m.
     tips_m: VecDeque<Vector3<f64>>,
     handle_before_m: Option<Vector3<f64>>,
     known: Option<Known>,
@@ -95,14 +94,14 @@ impl Running {
         Err(format!("the scene cannot be engaged: after {ENGAGED_WITHIN_S} s its right arm is still in {state}"))
     }
 
-    /// One step of so many ticks.
+    /// One step of this many ticks.
     pub(super) fn step(&mut self, action: Action, grip_rad: Option<f64>, ticks: u32) -> Option<Known> {
         self.take(action, ticks);
         if let Some(grip_rad) = grip_rad {
             self.obey(Command::Grip(SIDE, Some(grip_rad.clamp(0.0, GRIP_MAX_RAD))));
         }
         for _ in 0..ticks {
-            // The hand of the scene waits where the handle is, and the loop knows that the handle is led.
+            // The scene's hand waits at the handle, and the loop is informed that the handle is led.
             let guide = |at_m: Vector3<f64>| at_m.map(|x| x.clamp(-GUIDE_MAX_M, GUIDE_MAX_M));
             let command = self.rig.at_m().map(|at_m| Command::Guide(SIDE, Some(guide(at_m))));
             self.tick(command)?;
@@ -153,7 +152,7 @@ impl Running {
             handle_m,
             handle_m_s: (handle_m - before_m) / self.period_s,
             delayed_tip_m: self.tips_m.front().copied().unwrap_or(tick.tip_m),
-            // An observation has no NaN.
+            // An observation contains no NaN.
             has_force: delivered_n.is_some(),
             delayed_n: delivered_n.unwrap_or_else(Vector3::zeros),
             training: self.training,
@@ -162,7 +161,7 @@ impl Running {
         Some(known)
     }
 
-    /// Takes what is scored of a tick.
+    /// Adds a tick to the score.
     fn score(&mut self, ticks: &[Option<Tick>]) {
         let moments: Vec<_> = self.watched.iter().flat_map(Watched::moments).collect();
         self.training = moments.last().map(|moment| moment.training).or(self.training);
@@ -182,7 +181,7 @@ impl Running {
         }
     }
 
-    /// The score; it ends with this. `None` in a scene without a task.
+    /// Ends the score and returns it. `None` in a scene without a task.
     pub(super) fn end(&mut self) -> Option<Score> {
         let nobody_tells = self.watched.is_none();
         self.trial.take().and_then(|trial| trial.end(nobody_tells))

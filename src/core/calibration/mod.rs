@@ -1,9 +1,9 @@
 //! Calibrations: each returns a verdict with its reason, and the residuals on data that were not used for the fit.
 //!
 //! `gravity` removes the tool's weight and the sensor's bias from a wrist sensor's readings; `correspondence` finds the
-//! rotation between the sensor under the tissue and the one at the wrist; `frames` finds where things are: tip, marker,
-//! tracker, trocar, table, picture and the mount of the wrist sensor. A [`Record`] of each is bound to sensor, tool and
-//! date. SI units; frames as in [`crate::frames`].
+//! rotation between the sensor under the tissue and the one at the wrist; `frames` finds the poses of tip, marker,
+//! tracker, trocar, table, camera image and wrist sensor. Each is stored as a [`Record`], which is bound to sensor,
+//! tool and date. SI units; frames as in [`crate::frames`].
 
 pub mod correspondence;
 pub mod frames;

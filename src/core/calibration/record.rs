@@ -7,46 +7,39 @@ use super::Verdict;
 /// Sensor, tool, date and program version of a calibration: the first lines of its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecordHead {
-    /// Serial number of the wrist sensor.
     pub sensor: String,
-    /// Name of the tool on it.
     pub tool: String,
     /// Date of the calibration, UTC, ISO 8601 (`2026-08-21T10:20:30Z`).
     pub date: String,
-    /// Version of the program.
     pub software: String,
 }
 
 impl RecordHead {
-    /// The head of a record made by this version of the program. `date` in ISO 8601, UTC.
+    /// Creates the head of a record by this version of the program. `date` in ISO 8601, UTC.
     pub fn new(sensor: &str, tool: &str, date: &str) -> Self {
         let software = env!("CARGO_PKG_VERSION").to_owned();
         Self { sensor: sensor.to_owned(), tool: tool.to_owned(), date: date.to_owned(), software }
     }
 }
 
-/// Whether a calibration may be used, and who has overridden its verdict.
+/// Whether a calibration may be used, and the person who has overridden its verdict.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// Its verdict.
     pub verdict: Verdict,
-    /// Why, in one sentence.
     pub reason: String,
-    /// Name of the person who uses it in spite of its verdict.
+    /// Name of the person who uses the calibration in spite of its verdict.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub override_by: Option<String>,
-    /// Reason for overriding the verdict.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub override_reason: Option<String>,
 }
 
 impl Judgement {
-    /// The verdict without an override.
     pub fn new(verdict: Verdict, reason: impl Into<String>) -> Self {
         Self { verdict, reason: reason.into(), override_by: None, override_reason: None }
     }
 
-    /// Whether it may be used: accepted, or overridden by a named person.
+    /// Returns whether the calibration may be used: accepted, or overridden by a named person.
     pub fn allows(&self) -> bool {
         self.verdict == Verdict::Accepted || self.override_by.as_deref().is_some_and(|name| !name.trim().is_empty())
     }
@@ -61,13 +54,11 @@ impl Judgement {
 /// The content of a calibration file. A record has a field `kind` with the value [`KIND`](Self::KIND), and denies
 /// unknown keys.
 pub trait Record: Serialize + DeserializeOwned {
-    /// Its kind, also the first part of the file's name.
+    /// Kind of the record, also the first part of the file's name.
     const KIND: &'static str;
-    /// Sensor, tool and date.
     fn head(&self) -> &RecordHead;
-    /// Whether it may be used.
     fn judgement(&self) -> &Judgement;
-    /// What makes its numbers unusable; `None` if they are usable.
+    /// Returns the fault that makes the numbers unusable; `None` if they are usable.
     fn fault(&self) -> Option<&'static str> {
         None
     }

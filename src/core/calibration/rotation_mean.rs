@@ -1,8 +1,8 @@
 //! The mean of similar rotations.
 //!
-//! The rotation with the least sum of squared sines of half the angle to all of them: the eigenvector of the largest
+//! The rotation with the smallest sum of squared sines of half the angle to all of them: the eigenvector of the largest
 //! eigenvalue of `sum q q^T` (Markley, Cheng, Crassidis, Oshman 2007, "Averaging Quaternions"). q and -q count as the
-//! same rotation; sums of parts can be added.
+//! same rotation; partial sums can be added.
 
 use nalgebra::{Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 
@@ -18,12 +18,10 @@ impl RotationMean {
         self.outer += rotation.coords * rotation.coords.transpose();
     }
 
-    /// Adds all rotations of another mean.
     pub(super) fn merge(&mut self, other: &Self) {
         self.outer += other.outer;
     }
 
-    /// The mean; `None` if there are no rotations.
     pub(super) fn mean(&self) -> Option<UnitQuaternion<f64>> {
         // The trace is the number of rotations, because each has length one.
         if self.outer.trace() < 0.5 {

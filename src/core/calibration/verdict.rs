@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Whether a calibration may be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -20,7 +19,6 @@ pub enum Verdict {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisStats {
-    /// Mean absolute error.
     pub mae: [f64; 3],
     /// Standard deviation about the mean error.
     pub sd: [f64; 3],
@@ -29,7 +27,7 @@ pub struct AxisStats {
 }
 
 impl AxisStats {
-    /// Statistics of these errors; zeros if there are none.
+    /// Returns the statistics of these errors; zeros without errors.
     pub fn of(errors: impl IntoIterator<Item = Vector3<f64>>) -> Self {
         let mut count = 0.0;
         let [mut sum, mut squares, mut absolute, mut max] = [Vector3::<f64>::zeros(); 4];
@@ -48,12 +46,11 @@ impl AxisStats {
         Self { mae: (absolute / count).into(), sd: variance.map(f64::sqrt).into(), max: max.into() }
     }
 
-    /// Mean over the axes of the mean absolute error.
+    /// Returns the mean over the axes of the mean absolute error.
     pub fn mean_mae(&self) -> f64 {
         self.mae.iter().sum::<f64>() / 3.0
     }
 
-    /// Largest absolute error of any axis.
     pub fn largest(&self) -> f64 {
         self.max.iter().copied().fold(0.0, f64::max)
     }
@@ -63,9 +60,7 @@ impl AxisStats {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Residuals {
-    /// On the data used for the fit.
     pub fitted: AxisStats,
-    /// On held-out data.
     pub held_out: AxisStats,
 }
 

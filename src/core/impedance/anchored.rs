@@ -1,10 +1,12 @@
-//! Anchored rendering, the follower's part: learns how force changes over the delay, and judges itself at that horizon.
+//! Anchored rendering at the follower: learns how the force changes over the delay, and evaluates itself at that
+//! prediction horizon.
 //!
-//! The force at the hand is the last one measured plus a correction, `f^(t) = f(t-D) + c`. The correction is a mixture of
-//! experts: regressions of the change of force over D itself on the change of motion over D and on what the follower knew D
-//! ago. What the follower alone knows is folded into a constant before it is sent; the leader puts in its own motion. Every
-//! expert's prediction, made with what was known D ago, is compared with the force that came; no correction (delayed
-//! reflection) is always among the experts, as the part of the weights that is missing to one.
+//! The force at the hand is the last measured force plus a correction, `f^(t) = f(t-D) + c`. The correction is a
+//! mixture of experts: regressions of the change of force over D on the change of motion over D and on quantities that
+//! the follower measured D ago. Quantities that only the follower has are combined into one constant before it is sent;
+//! the leader inserts its own motion. Every expert's prediction, computed from the data of D ago, is compared with the
+//! force measured now. No correction (delayed reflection) is always one of the experts: its weight is the difference
+//! between one and the sum of the weights.
 
 use super::{
     Mode,
@@ -18,18 +20,19 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
-/// A correction may be this many times the change of force recently seen over the delay.
+/// A correction may be at most this many times the recent change of force over the delay. This and the other constants
+/// were chosen by hand on the recordings of both rigs, and on simulated palpation, reaching, sudden contact and loss of contact.
 const BOUND: f64 = 1.5;
-/// What an expert said is judged within this many times that change.
+/// An expert's prediction is evaluated after limiting it to this many times that change. Chosen as [`BOUND`].
 const EXPERT_BOUND: f64 = 2.0;
-/// Solves per second of every ridge (at most one a tick). They come in turn and are in force at once. Half as many cost 1 % of
-/// accuracy at 10 ms, more bring nothing.
+/// Solves per second of every ridge (at most one per tick). The ridges are solved in turn, and each solution is active
+/// at once. Half as many cost 1 % of accuracy at 10 ms; more have no benefit.
 const SOLVE_HZ: f64 = 150.0;
 const EXPERTS: usize = RIDGES * NESTED;
 const UNKNOWN: Solutions = [[Lanes::ZERO; REGRESSORS]; NESTED];
-/// The error of reflection is taken for this share of what it is while the judgement is made with newer parameters than those
-/// that would have been sent (which is optimistic), and in the first moments, when nothing is known but free motion: a first
-/// contact was rendered up to 4 % worse than reflected.
+/// Fraction of the reflection's error that counts while the evaluation uses newer parameters than those that would have
+/// been sent (which is optimistic), and in the first moments, when only free motion has been seen: a first contact was
+/// otherwise rendered up to 4 % worse than reflected.
 const EARLY_CAUTION: f64 = 0.6;
 const FIRST_CAUTION: f64 = 0.2;
 const FIRST_S: f64 = 0.3;
@@ -42,17 +45,16 @@ pub(super) struct Anchored {
     tick: usize,
     surroundings: Surroundings,
     regression: Regression,
-    /// What was found for each ridge.
+    /// Solutions of each ridge.
     found: [DelayLine<Solutions>; RIDGES],
     moments: DelayLine<Moment>,
     mixture: Mixture<EXPERTS>,
     largest_change_n: f64,
     envelope: Envelope,
-    /// How often the regressions had to begin anew because a number was not finite.
+    /// Number of times that the regressions had to restart because a number was not finite.
     restarts: u64,
 }
 
-/// What the follower was like at one tick.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moment {
     good: bool,
@@ -81,8 +83,8 @@ impl Anchored {
         }
     }
 
-    /// Takes the follower's newest motion and force; `good`: the sample was measured, not bridged; `learn`: there is something to
-    /// learn from.
+    /// Adds the follower's newest motion and force; `good`: the sample was measured, not bridged; `learn`: the sample
+    /// is informative.
     fn step(&mut self, stance: &Stance, force_n: Lanes, good: bool, learn: bool) -> AnchoredModel {
         let d = self.delay_ticks;
         let usual = (self.tick > 2 * d).then(|| self.regression.mean_squares());
@@ -108,12 +110,13 @@ impl Anchored {
         model
     }
 
-    /// Judged with newer parameters than those that would have been sent, so that rendering starts one delay earlier.
+    /// Returns whether predictions are evaluated with newer parameters than those that would have been sent; rendering
+    /// then starts one delay earlier.
     fn early(&self) -> bool {
         self.tick < 3 * self.delay_ticks
     }
 
-    /// The share of reflection's error that counts against a correction.
+    /// Returns the fraction of the reflection's error that counts against a correction.
     fn caution(&self) -> f64 {
         match self.early() {
             true if (self.tick as f64) < FIRST_S * self.rate_hz => FIRST_CAUTION,
@@ -135,18 +138,17 @@ impl Anchored {
         self.mixture.judge(&said, change, self.caution());
     }
 
-    /// The tick between two renewals in which a ridge is solved.
+    /// Returns the tick between two renewals in which a ridge is solved.
     const fn phase(&self, ridge: usize) -> usize {
         ridge * self.every / RIDGES
     }
 
-    /// How often a ridge was solved since the tick that many ticks ago, this one not yet.
+    /// Returns how often a ridge was solved since `ticks` ticks ago, not counting this tick.
     const fn renewals(&self, ridge: usize, ticks: usize) -> usize {
         let ahead = self.every - self.phase(ridge) - 1;
         (self.tick + ahead) / self.every - (self.tick + 1 - ticks + ahead) / self.every
     }
 
-    /// One ridge in its turn.
     fn solve(&mut self, learn: bool) {
         let phase = self.tick % self.every;
         for ridge in 0..RIDGES {
@@ -157,7 +159,7 @@ impl Anchored {
             if learn {
                 found = self.regression.solve(ridge);
             }
-            // A last resort: whatever a sum has caught, it is not kept and not sent.
+            // Last resort: a sum that is not finite is neither kept nor sent.
             if !found.iter().flatten().all(|p| p.is_finite()) {
                 self.regression.reset();
                 found = UNKNOWN;
@@ -167,7 +169,7 @@ impl Anchored {
         }
     }
 
-    /// Experts and weights folded into what the leader needs.
+    /// Combines experts and weights into the model that the leader needs.
     fn model(&self, stance: &Stance, background: &Background) -> AnchoredModel {
         let weights = self.mixture.weights();
         let mut p = [Lanes::ZERO; REGRESSORS];
@@ -179,7 +181,7 @@ impl Anchored {
                 }
             }
         }
-        // With no motion since the anchor only what the follower alone knows is left.
+        // With no motion since the anchor, only the follower's own quantities remain.
         let constant = predict(&p, &background.regressors(stance, stance), REGRESSORS);
         let [low, high] = self.envelope.bounds_n();
         let force = background.force_n;
@@ -208,7 +210,7 @@ impl Anchored {
         }
     }
 
-    /// The highest power of the position in the model that most of the weight is on; 0 without a correction.
+    /// Returns the highest power of the position in the model with the largest weight; 0 without a correction.
     fn degree(&self) -> u8 {
         let sum = |[x, y, z, _]: [f64; 4]| x + y + z;
         let [linear, full] =
@@ -245,7 +247,7 @@ impl Method for Anchored {
         }
     }
 
-    /// What was learnt at the old delay is forgotten.
+    /// Changes the delay; everything learned at the old delay is discarded.
     fn set_delay(&mut self, delay_ticks: usize) {
         if delay_ticks != self.delay_ticks {
             self.delay_ticks = delay_ticks;
@@ -260,7 +262,6 @@ impl Method for Anchored {
     }
 }
 
-/// Each lane kept between two bounds.
 #[inline]
 pub(super) fn within(value: Lanes, low: Lanes, high: Lanes) -> Lanes {
     value.zip(low, f64::max).zip(high, f64::min)

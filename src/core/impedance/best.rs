@@ -1,4 +1,6 @@
-//! The better of anchored and matched rendering, by what each was worth lately where the force is felt.
+//! The better of anchored and matched rendering, by the recent errors of both where the force is felt.
+//!
+//! The constants were chosen on four recordings of the first rig and on sequences of changing tissue.
 
 use super::{
     Mode,
@@ -10,28 +12,31 @@ use crate::signal::{DelayLine, Lanes};
 
 /// Memory of the errors (s by the clock).
 const MEMORY_S: f64 = 1.0;
-/// Matched rendering learns longer than anchored, so its past errors say too much: they count for this share less at first, and
-/// for what they are once the memory is full.
+/// Matched rendering learns for longer than anchored, so its past errors are pessimistic: at first they are reduced by
+/// this fraction, and count fully once the memory is full.
 const LEARNING: f64 = 0.2;
-/// What matched rendering has erred by all the time, for half of this to all of it (s), counts at least for this share.
+/// The smallest error of matched rendering over the last half to full period of this length (s), times this fraction,
+/// is a lower bound of its mean error.
 const LASTING_S: f64 = 0.06;
 const LASTING: f64 = 0.7;
-/// Memory in which the mixture itself is judged against anchored rendering (s by the clock): some touches. 1 to 8 s are as good.
+/// Memory in which the mixture itself is compared with anchored rendering (s by the clock): some touches. 1 to 8 s
+/// perform equally well.
 const TRIAL_S: f64 = 4.0;
-/// Errors below this are equal (N).
+/// Errors below this count as equal (N): below it both weights would divide rounding by rounding.
 const EQUAL_N: f64 = 1e-12;
 
-/// A softmin, per axis, of the running errors of what the leader itself rendered, judged by the force that a parcel brings one
-/// delay later. The follower cannot judge this: it does not know the motion from which the leader makes the force, and matched
-/// rendering errs by the stiffness times what that motion is wrong. Holding needs no weight of its own: anchored rendering is
-/// holding wherever its correction does not help.
+/// A softmin, per axis, of the running errors of the forces that the leader itself rendered, evaluated by the force
+/// that a packet brings one delay later. The follower cannot do this: it does not have the motion from which the leader
+/// computes the force, and the error of matched rendering is the stiffness times the error of that motion. A zero-order
+/// hold needs no separate weight: anchored rendering is a hold wherever its correction does not help.
 ///
-/// On another tissue both err at first. Anchored rendering does so for one delay, matched until it has learnt the tissue; but the
-/// errors of both are known one delay late, so that both look bad for as long again. An error of matched that does not go
-/// away tells it sooner: it is compared at once with what anchored usually errs by.
+/// On another tissue both err at first: anchored rendering for one delay, matched rendering until it has learned the
+/// tissue. Because the errors of both are known one delay late, both look bad for as long again. A lasting error of
+/// matched rendering reveals the change sooner: it is compared at once with the usual error of anchored rendering.
 ///
-/// Where the tissue changes again and again, each change costs something before it is known. So the mixture is judged itself,
-/// over some touches: the more it errs beyond anchored rendering, the less of matched is in it.
+/// If the tissue changes again and again, each change costs something before it is detected. The mixture itself is
+/// therefore evaluated over some touches: the more it errs beyond anchored rendering, the smaller the weight of matched
+/// rendering.
 #[derive(Clone, Debug)]
 pub(super) struct Best {
     rate_hz: f64,
@@ -44,14 +49,14 @@ pub(super) struct Best {
     anchored: Lanes,
 }
 
-/// What anchored, matched and their mixture would have rendered at one tick (N), and how fast time ran then.
+/// Forces (N) that anchored, matched and their mixture would have rendered at one tick, and the pace of time then.
 #[derive(Clone, Copy, Debug, Default)]
 struct Said {
     forces_n: Option<[Lanes; 3]>,
     pace: f64,
 }
 
-/// The mixture against anchored rendering: mean errors (N).
+/// Mean errors (N) of the mixture and of anchored rendering.
 #[derive(Clone, Copy, Debug, Default)]
 struct Trial {
     judged: f64,
@@ -60,19 +65,19 @@ struct Trial {
 }
 
 impl Trial {
-    /// How far the mixture is to be given up, 0 to 1.
+    /// Returns the degree to which the mixture is to be abandoned, 0 to 1.
     fn step(&mut self, [anchored_n, mixed_n]: [Lanes; 2], pace: f64, rate_hz: f64) -> Lanes {
         self.judged += pace;
         let share = share(pace, self.judged, TRIAL_S * rate_hz);
         follow(&mut self.anchored_n, anchored_n, share);
         follow(&mut self.mixed_n, mixed_n, share);
         let odds = odds(self.mixed_n, self.anchored_n);
-        // Twice the exponent: the mixture is seldom worse by more than a few per cent.
+        // Twice the exponent, so that the mixture is rarely worse by more than a few per cent.
         (odds * odds).map(|odds| 1.0 / (1.0 + odds.recip()))
     }
 }
 
-/// The least error (N) of this block of ticks and the one before.
+/// The smallest error (N) of the current block of ticks and of the previous one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lasting {
     ticks: usize,
@@ -83,7 +88,7 @@ impl Lasting {
     fn step(&mut self, block: usize, error_n: Lanes) -> Lanes {
         if self.ticks.is_multiple_of(block) {
             let [newest_n, _] = self.least_n;
-            // Nothing lasts before there is a block to compare with.
+            // No error has lasted before there is a block to compare with.
             self.least_n = [error_n, if self.ticks > 0 { newest_n } else { Lanes::ZERO }];
         }
         self.ticks += 1;
@@ -108,19 +113,20 @@ impl Best {
         }
     }
 
-    /// The weight of anchored rendering, 0 to 1; matched rendering has the rest, and everything until the first judgement.
+    /// Returns the weight of anchored rendering, 0 to 1; matched rendering has the remainder, and all weight until the
+    /// first evaluation.
     pub(super) const fn anchored(&self) -> Lanes {
         self.anchored
     }
 
-    /// Keeps what was rendered in this tick by each mode ([`Mode::index`]).
+    /// Stores the force rendered in this tick by each mode ([`Mode::index`]).
     pub(super) fn say(&mut self, forces_n: &[Option<Lanes>], pace: f64) {
         let of = |mode: Mode| forces_n[mode.index()];
         let both = of(Mode::Anchored).zip(of(Mode::Matched)).zip(of(Mode::Best));
         self.said.push(Said { forces_n: both.map(|((anchored, matched), mixed)| [anchored, matched, mixed]), pace });
     }
 
-    /// Judges what was rendered `age` ticks ago by the force of that time, which has just come.
+    /// Evaluates the forces rendered `age` ticks ago by the force of that time, which has just arrived.
     pub(super) fn hear(&mut self, parcel: &Parcel, age: usize) {
         if !parcel.modes.contains(Mode::Best) {
             self.forget();
@@ -143,14 +149,13 @@ impl Best {
         let learning = 1.0 - LEARNING * (1.0 - full);
         let odds = odds(self.matched_n.zip(lasting_n, f64::max) * learning, self.anchored_n);
         self.anchored = odds.map(|odds| 1.0 / (1.0 + odds.recip()));
-        // In the first half of the memory both still learn what they will go on with.
+        // In the first half of the memory both modes are still learning.
         if full > 0.5 {
             let given_up = self.trial.step([anchored_n, mixed_n], pace, self.rate_hz) * (2.0 * full - 1.0);
             self.anchored += (Lanes::splat(1.0) - self.anchored) * given_up;
         }
     }
 
-    /// Forgets what was judged.
     fn forget(&mut self) {
         let none = Lanes::ZERO;
         self.judged = 0.0;
@@ -172,13 +177,13 @@ fn follow(mean_n: &mut Lanes, error_n: Lanes, share: f64) {
     *mean_n = (*mean_n + (error_n - *mean_n) * share).settled();
 }
 
-/// The odds against what erred by `error_n`, beside what erred by `other_n`.
+/// Returns the odds against a mode that errs by `error_n`, compared with a mode that errs by `other_n`.
 fn odds(error_n: Lanes, other_n: Lanes) -> Lanes {
     let floor_n = Lanes::splat(EQUAL_N);
     eighth_power((error_n + floor_n) / (other_n + floor_n))
 }
 
-/// The softmin's exponent.
+/// Returns the power that the softmin takes.
 pub(super) fn eighth_power(value: Lanes) -> Lanes {
     let square = value * value;
     let fourth = square * square;
@@ -192,7 +197,7 @@ mod tests {
 
     const DELAY: usize = 100;
 
-    /// A leader that hears of a force of `0` what `errors_n` (anchored, matched) said one delay before.
+    /// A leader that receives a force of `0` where `errors_n` (anchored, matched) was predicted one delay before.
     struct Bench(Best);
 
     impl Bench {
@@ -200,7 +205,7 @@ mod tests {
             Self(Best::new(&Settings::default()))
         }
 
-        /// Goes on for some ticks; the weight of anchored afterwards.
+        /// Runs for some ticks; returns the weight of anchored rendering afterwards.
         fn run(&mut self, ticks: usize, errors_n: [f64; 2]) -> f64 {
             let parcel = Parcel { fresh: true, modes: ModeSet::only(Mode::Best), ..Parcel::BLANK };
             for _ in 0..ticks {
@@ -223,7 +228,7 @@ mod tests {
     fn an_error_that_does_not_go_away_tells_another_tissue_before_anchored_has_been_right_again() {
         let mut bench = Bench::new();
         assert!(bench.run(5000, [0.1, 0.05]) < 0.01, "on a known tissue matched is the better");
-        // Both err by the new tissue: anchored for one delay. Nothing else is known yet when it is right again.
+        // Both err by the new tissue: anchored for one delay. When it is right again, no newer error is known yet.
         bench.run(DELAY, [0.6, 0.6]);
         let weight = bench.run(DELAY, [0.1, 0.6]);
         assert!(weight > 0.9, "{weight} when the first errors of the new tissue have all come");

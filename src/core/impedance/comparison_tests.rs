@@ -1,11 +1,11 @@
-//! Anchored rendering against delayed reflection: real recordings, and what must never make it worse.
+//! Anchored rendering compared with delayed reflection, on real recordings and in cases that must never make it worse.
 
 use nalgebra::Vector3;
 use nima_testing::unjudged;
 
 use super::*;
 
-/// Samples of a recording (x only); `None`, reported, where it is absent.
+/// Returns the samples of a recording (x only); reports an absent recording and returns `None`.
 fn recording(name: &str) -> Option<Vec<Sample>> {
     let text = std::fs::read_to_string(unjudged::recording(&format!("tue_1dof/{name}"))?).unwrap();
     let parse = |line: &str| {
@@ -18,7 +18,7 @@ fn recording(name: &str) -> Option<Vec<Sample>> {
     text.lines().skip(1).map(parse).collect()
 }
 
-/// Mean 3-D error (N) of every mode over a recording.
+/// Returns the mean 3-D error (N) of every mode over a recording.
 fn mean_errors(samples: &[Sample], settings: &Settings) -> [f64; MODES] {
     let mut identifier = Identifier::new(settings).unwrap();
     let mut sums = [0.0; MODES];
@@ -62,7 +62,8 @@ fn real_recordings() {
     }
 }
 
-/// The mean over the recordings that the constants were chosen on, and over the others, as in docs/matched.md with a small margin.
+/// The mean over the recordings on which the constants were chosen, and over the others, as in docs/modes.md with a
+/// small margin.
 #[test]
 fn the_best_of_two_on_real_recordings() {
     for (runs, limits) in [
@@ -89,7 +90,7 @@ fn the_best_of_two_on_real_recordings() {
     }
 }
 
-/// Uneven numbers with the spread of a normal distribution of unit variance, the same every time.
+/// Random numbers with the spread of a normal distribution of unit variance, identical in every run.
 struct Noise(u64);
 
 impl Noise {
@@ -107,10 +108,10 @@ fn smooth_step(t: f64) -> f64 {
     t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
 }
 
-/// Depth of the tip in tissue (m) and the normal force (N) at a time, of one scenario.
+/// Depth of the tip in tissue (m) and normal force (N) at a time.
 type Scenario = fn(f64) -> (f64, f64);
 
-/// Free for 1.5 s, then 5 N within 50 ms, held, and off again, every 3 s.
+/// Free for 1.5 s, then 5 N within 50 ms, held, and released again, every 3 s.
 fn sudden_contact(t: f64) -> (f64, f64) {
     let t = t % 3.0;
     let depth = |z: f64| (-z).max(0.0);
@@ -133,7 +134,7 @@ fn held(t: f64) -> (f64, f64) {
     (-0.004, 2.0 + 0.3 * (1.1 * t).sin() + 0.2 * (2.7 * t + 1.0).sin())
 }
 
-/// Palpating for 3 s, standing still in contact for 6 s, palpating again.
+/// Palpates for 3 s, stands still in contact for 6 s, palpates again.
 fn standstill(t: f64) -> (f64, f64) {
     let z = if (3.0..9.0).contains(&t) { -0.004 } else { -0.004 - 0.002 * (6.0 * (t - 9.0)).sin() };
     (z, -500.0 * z)
@@ -187,7 +188,7 @@ fn what_comes_later_changes_nothing_before() {
     for k in 0..2000 {
         let sample = super::tests::sample(k, 1000.0);
         plain.step(&sample);
-        // From tick 1000 on another force: it must not be felt before tick 1040, the motion being the same.
+        // From tick 1000 on the force differs: with unchanged motion this must not be felt before tick 1040.
         let force_n = if k < 1000 { sample.force_n } else { Vector3::new(3.0, -2.0, 1.0) };
         other.step(&Sample { force_n, ..sample });
         let same = plain.report().prediction_n == other.report().prediction_n;

@@ -1,19 +1,20 @@
-//! A little damping, so that a force made of the handle's own motion does not drive the hand.
+//! A little damping, so that a force computed from the handle's own motion does not drive the hand.
 
 use super::{pace::share, regressors::Stance};
 use crate::signal::{Lanes, settled};
 
-/// The damping of usual motion, as a share of the usual force. With 0.02 the mean power into the hand was still 0.5 mW in one of 60
-/// cases (four tasks, tissue 0.4 to 2.5 times as stiff, 0 to 300 ms), with 0.03 in none; without damping up to 2.2 mW.
+/// Damping force of usual motion, as a fraction of the usual force. With 0.02 the mean power into the hand was still
+/// 0.5 mW in one of 60 cases (four tasks, tissue 0.4 to 2.5 times as stiff, 0 to 300 ms), with 0.03 in none; without
+/// damping it was up to 2.2 mW (`nima study passivity`).
 const SHARE: f64 = 0.03;
 /// Memory of the usual motion and force (s by the clock).
 const USUAL_S: f64 = 20.0;
 
-/// Viscous damping in proportion to the usual force over the usual motion, so that it is free of units.
+/// Viscous damping in proportion to the usual force over the usual motion, which makes it independent of units.
 ///
-/// The force of a spring is held for a tick while the hand goes on, and its parameters change while it is pressed: both give the hand
-/// energy, the more the stiffer it is. A sampled spring needs damping in proportion to its stiffness to be passive (Colgate and
-/// Schenkel 1994: more than half of stiffness times period).
+/// The force of a spring is held for a tick while the hand moves on, and its parameters change while it is pressed.
+/// Both give energy to the hand, and more for a stiffer spring. To be passive, a sampled spring needs damping in
+/// proportion to its stiffness (Colgate and Schenkel 1994: more than half of stiffness times period).
 #[derive(Clone, Debug)]
 pub(super) struct Damper {
     rate_hz: f64,
@@ -27,9 +28,9 @@ impl Damper {
         Self { rate_hz, passed: 0.0, motion2: 0.0, force2: 0.0 }
     }
 
-    /// Takes this tick's motion and the force made of it (N); returns the damped force (N).
+    /// Takes this tick's motion and the force computed from it (N); returns the damped force (N).
     pub(super) fn step(&mut self, now: &Stance, force_n: Lanes) -> Lanes {
-        // Nearly in proportion to the velocity, and hardly shaken by the steps of an encoder.
+        // Nearly proportional to the velocity, and hardly disturbed by encoder steps.
         let above_low_pass_m = now.u[1];
         self.passed += now.pace;
         let share = share(now.pace, self.passed, USUAL_S * self.rate_hz);

@@ -1,4 +1,5 @@
-//! The degrees of the window's impedance, shown beside the paper's where modes are compared; nothing is rendered from them.
+//! The degrees of the window's impedance, shown next to the paper's where modes are compared; no force is rendered from
+//! them.
 
 use super::{
     Mode,
@@ -13,7 +14,7 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Slides the window, solves every nested degree on it, and judges each at the horizon.
+/// Slides the window, solves every nested degree on it, and evaluates each at the prediction horizon.
 #[derive(Clone, Debug)]
 pub(super) struct Degrees {
     window: SlidingWindow<Factor>,
@@ -37,7 +38,7 @@ impl Degrees {
         }
     }
 
-    /// Whether the degrees of the window are wanted: for comparison with the paper's.
+    /// Returns whether the degrees of the window are required for comparison with the paper's.
     pub(super) fn are_wanted(modes: ModeSet) -> bool {
         modes.contains(Mode::Anchored) && modes.contains(Mode::Literal)
     }
@@ -52,7 +53,6 @@ impl Method for Degrees {
         Self::are_wanted(modes)
     }
 
-    /// Fills in what the report says of the window.
     fn take(&mut self, seen: &Seen<'_>, _parcel: &mut Parcel, report: &mut Report) {
         let features = &seen.posture.features;
         if !seen.learn {

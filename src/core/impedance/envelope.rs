@@ -1,12 +1,12 @@
-//! The range of forces seen of late: forces beyond it are not invented.
+//! The range of recent forces: a rendered force stays near it.
 
 use crate::signal::Lanes;
 
-/// Memory of the range (s), and how far beyond it a rendered force may go, in its widths.
+/// Memory of the range (s), and how far a rendered force may exceed the range, as a fraction of its width. Chosen as in `anchored.rs`.
 const MEMORY_S: f64 = 5.0;
 const MARGIN: f64 = 0.1;
 
-/// Least and greatest force per axis, leaking towards their middle.
+/// Minimum and maximum force per axis, leaking towards their middle.
 #[derive(Clone, Debug)]
 pub(super) struct Envelope {
     leak: f64,
@@ -18,7 +18,7 @@ impl Envelope {
         Self { leak: 1.0 / (MEMORY_S * rate_hz), edges_n: None }
     }
 
-    /// Takes a force (N); `pace`: how fast time runs, 1 by the clock on the wall.
+    /// Adds a force (N); `pace`: speed of the clock, 1 for real time.
     pub(super) fn see(&mut self, force_n: Lanes, pace: f64) {
         let [low, high] = self.edges_n.unwrap_or([force_n; 2]);
         let middle = (low + high) * 0.5;
@@ -27,7 +27,7 @@ impl Envelope {
         self.edges_n = Some([leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)]);
     }
 
-    /// Least and greatest force to render (N): the range and its margin; zero before any force was seen.
+    /// Returns the minimum and maximum force to render (N): the range and its margin; zero before the first force.
     pub(super) fn bounds_n(&self) -> [Lanes; 2] {
         let [low, high] = self.edges_n.unwrap_or_default();
         let margin = (high - low) * MARGIN;

@@ -3,26 +3,27 @@
 use super::{features::MOTION_COLUMNS, window::Summary};
 use crate::signal::Lanes;
 
-/// Unknowns of the largest problem: a constant and the motion columns.
+/// Maximum number of unknowns: a constant and the motion columns.
 pub(super) const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
 /// Entries of a row: the columns, then the right-hand side.
 pub(super) const MAX_ROW: usize = MAX_COLUMNS + 1;
-/// Columns reflected side by side in a merge: four chains of additions in flight (2: 10 % slower, 6: they spill, twice as slow).
+/// Number of columns reflected together in a merge: four chains of additions in flight (2: 10 % slower; 6: registers
+/// spill, twice as slow).
 const WIDTH: usize = 4;
 const MAX_ELEMENTS: usize = MAX_ROW * (MAX_ROW + 1) / 2;
 
-/// Start of column `j` in a packed upper triangle (column `j` holds rows `0..=j`).
+/// Returns the start of column `j` in a packed upper triangle (column `j` holds rows `0..=j`).
 pub(super) const fn column_start(j: usize) -> usize {
     j * (j + 1) / 2
 }
 
-/// `R` of `[A b] = Q R` for the rows of `A` and right-hand side `b` taken in so far, one problem per lane.
+/// `R` of `[A b] = Q R` for the rows of `A` and right-hand side `b` added so far, one problem per lane.
 ///
 /// Upper triangle packed by columns; the right-hand side is the last column, and its diagonal entry is the norm of the
-/// residual. A row is taken in by plane rotations; two factors are merged by Householder reflections of one stacked on the
-/// other. Both are backward stable and nothing is ever subtracted, so no error accumulates beyond that of one solve.
-/// Diagonal entries may have either sign. Squares of entries must neither overflow nor all underflow: entries between
-/// 1e-150 and 1e150 (the identifier sees to it).
+/// residual. A row is added by plane rotations; two factors are merged by Householder reflections of one stacked on the
+/// other. Both are backward stable and nothing is ever subtracted, so errors do not accumulate beyond the error of one
+/// solve. Diagonal entries may have either sign. Squares of entries must neither overflow nor all underflow: entries
+/// between 1e-150 and 1e150 (the identifier ensures this).
 #[derive(Clone, Debug)]
 pub struct Factor {
     columns: usize,
@@ -30,13 +31,13 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// The factor of no rows, for `columns <= 16` unknowns.
+    /// Creates the factor of no rows, for `columns <= 16` unknowns.
     pub fn new(columns: usize) -> Self {
         Self { columns: columns.min(MAX_COLUMNS), elements: [Lanes::ZERO; MAX_ELEMENTS] }
     }
 
-    /// The factor that pulls every unknown but the first (the constant) towards zero: `sqrt(weight)` on the diagonal, i.e.
-    /// `weight * |M|^2` is added to the sum of squares.
+    /// Creates a factor that pulls every unknown but the first (the constant) towards zero: `sqrt(weight)` on the
+    /// diagonal, i.e. `weight * |M|^2` is added to the sum of squares.
     pub fn with_ridge(columns: usize, weight: f64) -> Self {
         let mut factor = Self::new(columns);
         for j in 1..factor.columns {
@@ -45,12 +46,11 @@ impl Factor {
         factor
     }
 
-    /// Number of unknowns.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Column `j` (rows `0..=j`); `j == columns()` is the right-hand side.
+    /// Returns column `j` (rows `0..=j`); `j == columns()` is the right-hand side.
     #[inline]
     pub fn column(&self, j: usize) -> &[Lanes] {
         &self.elements[column_start(j)..=column_start(j) + j]
@@ -58,7 +58,8 @@ impl Factor {
 }
 
 impl Summary for Factor {
-    /// `columns` entries, then the right-hand side at index `columns`; the rest is ignored. A row of zeros changes nothing.
+    /// `columns` entries, then the right-hand side at index `columns`; further entries are ignored. A row of zeros
+    /// changes nothing.
     type Row = [Lanes; MAX_ROW];
 
     const BLANK_ROW: Self::Row = [Lanes::ZERO; MAX_ROW];
@@ -98,15 +99,15 @@ impl Summary for Factor {
     }
 }
 
-/// The root of a sum of squares; zero below 1e-280, where squares lose digits, reflections would no longer be orthogonal and
-/// the reciprocal of a square overflows.
+/// Returns the root of a sum of squares; zero below 1e-280, where squares lose digits, reflections would no longer be
+/// orthogonal and the reciprocal of a square overflows.
 #[inline]
 fn norm_of(squares: Lanes) -> Lanes {
     squares.map(|squares| if squares < 1e-280 { 0.0 } else { squares }).sqrt()
 }
 
-/// Takes one row into each of several factors of the same size, column by column: the square root and the division of one
-/// rotation are waited for while the others go on.
+/// Adds one row to each of several factors of the same size, column by column: while the square root and the division
+/// of one rotation are pending, the others proceed.
 #[inline]
 fn add_rows<const COUNT: usize>(mut targets: [&mut Factor; COUNT], rows: [&[Lanes; MAX_ROW]; COUNT]) {
     let n = targets.iter().map(|target| target.columns).min().unwrap_or(0);
@@ -124,7 +125,7 @@ fn add_rows<const COUNT: usize>(mut targets: [&mut Factor; COUNT], rows: [&[Lane
             let diagonal = column[j];
             let norm = norm_of(diagonal * diagonal + entry * entry);
             let inverse = norm.recip_or_zero();
-            // Nothing to rotate: the row goes on to the next column as it is.
+            // Nothing to rotate: the row continues to the next column unchanged.
             let cosine = (diagonal * inverse).zip(norm, |cosine, norm| if norm == 0.0 { 1.0 } else { cosine });
             rotations[j] = (cosine, entry * inverse);
             column[j] = norm;
@@ -132,8 +133,8 @@ fn add_rows<const COUNT: usize>(mut targets: [&mut Factor; COUNT], rows: [&[Lane
     }
 }
 
-/// Reflects row `k` of the columns `j..j + COUNT` of `above` together with those of `below` (the rest of its packed columns,
-/// from column `j` on); returns what is left of `below`.
+/// Reflects row `k` of the columns `j..j + COUNT` of `above` together with those of `below` (the rest of its packed
+/// columns, from column `j` on); returns the remainder of `below`.
 #[inline]
 fn reflect_columns<'a, const COUNT: usize>(
     above: &mut [Lanes; MAX_ELEMENTS],

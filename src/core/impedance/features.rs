@@ -5,27 +5,25 @@ use serde::{Deserialize, Serialize};
 use super::MAX_DEGREE;
 use crate::signal::{Lanes, Motion};
 
-/// Motion columns of the highest degree: `3 N` = 15.
+/// Number of motion columns of the highest degree: `3 N` = 15.
 pub const MOTION_COLUMNS: usize = 3 * MAX_DEGREE;
 
 /// `u, u', u'', u^2, u'^2, u''^2, ...`: 15 entries, ordered by degree, so that a lower degree is a prefix of a higher one.
 pub type Features = [Lanes; MOTION_COLUMNS];
 
-/// The size of ordinary motion and force, by which columns are divided before they are raised to a power.
+/// Typical magnitudes of motion and force; columns are divided by them before they are raised to a power.
 ///
-/// Fixed numbers, not measured from the data: a row once made never changes, and the answer does not depend on the unit of
-/// length as long as the scales are given in the same unit. The defaults are the laparoscopic workspace (± 0.1 m about the
-/// trocar), a brisk instrument (0.2 m/s), the acceleration of a hand's tremor and quick stops (4 m/s², i.e. that speed
-/// turned round at 3 Hz), and the default force ceiling (4 N).
+/// They are fixed, not measured from the data: a row never changes once it is computed, and the result does not depend
+/// on the unit of length as long as the scales are given in the same unit. The defaults are the laparoscopic workspace
+/// (± 0.1 m about the trocar), a brisk instrument (0.2 m/s), the acceleration of a hand's tremor and quick stops (4
+/// m/s², i.e. that speed reversed at 3 Hz), and the default force ceiling (4 N).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
-    /// Length (m).
     pub position_m: f64,
-    /// Speed (m/s).
     pub velocity_m_s: f64,
-    /// An acceleration is divided by this before it enters a row.
+    /// Unit of acceleration in a row.
     pub acceleration_m_s2: f64,
-    /// Force (N): what counts as absurd is judged by it; it does not enter the fit.
+    /// Unit of force (N): the limit of absurd forces is a multiple of it; it does not enter the fit.
     pub force_n: f64,
 }
 
@@ -35,11 +33,12 @@ impl Default for Scales {
     }
 }
 
-/// Below this a scaled quantity is rounding noise; set to zero so that its powers never become subnormal (and slow).
+/// A scaled quantity below this is rounding noise; it is set to zero so that its powers never become subnormal (and
+/// slow).
 const FLUSH: f64 = 1e-20;
 
 impl Scales {
-    /// Features of `motion` up to `degree`, each divided by its scale; columns beyond the degree stay zero.
+    /// Returns the features of `motion` up to `degree`, each divided by its scale; columns beyond the degree are zero.
     #[inline]
     pub fn features(&self, motion: &Motion, degree: usize) -> Features {
         let scaled = Motion {
@@ -51,7 +50,8 @@ impl Scales {
     }
 }
 
-/// Powers 1 to `degree` of a motion: `u, u', u'', u^2, u'^2, u''^2, ...`; columns beyond the degree stay zero.
+/// Returns the powers 1 to `degree` of a motion: `u, u', u'', u^2, u'^2, u''^2, ...`; columns beyond the degree are
+/// zero.
 #[inline]
 pub(super) fn features(motion: &Motion, degree: usize) -> Features {
     let mut columns = [Lanes::ZERO; MOTION_COLUMNS];

@@ -7,13 +7,13 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Most entries of a row: a constant, the motion columns, the force.
+/// Maximum number of entries of a row: a constant, the motion columns, the force.
 pub(super) const GRAM_ROW: usize = MOTION_COLUMNS + 2;
 const ELEMENTS: usize = GRAM_ROW * (GRAM_ROW + 1) / 2;
 
 /// `[X; f] [X; f]^T`, one per lane: the upper triangle packed by columns, the force in the last one.
 ///
-/// The window slides it in blocks of sums; nothing is subtracted, so it does not drift.
+/// The window updates it in blocks of sums; nothing is subtracted, so it does not drift.
 #[derive(Clone, Debug)]
 pub struct Gram {
     columns: usize,
@@ -23,33 +23,32 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// The sums of no rows, for `columns <= 15` motion columns.
+    /// Creates the sums of no rows, for `columns <= 15` motion columns.
     pub fn new(columns: usize) -> Self {
         Self { columns: columns.min(MOTION_COLUMNS), constant: None, elements: [Lanes::ZERO; ELEMENTS] }
     }
 
-    /// The same with a constant before the motion columns, `one` in the lanes in use.
+    /// Creates the sums with a constant before the motion columns, `one` in the lanes in use.
     pub fn with_constant(columns: usize, one: Lanes) -> Self {
         Self { columns: columns.min(MOTION_COLUMNS) + 1, constant: Some(one), ..Self::new(0) }
     }
 
-    /// Number of columns, the constant included.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Columns before the motion's: 1 with a constant, 0 without.
+    /// Returns the number of columns before the motion columns: 1 with a constant, 0 without.
     pub fn constants(&self) -> usize {
         usize::from(self.constant.is_some())
     }
 
-    /// Column `j` (rows `0..=j`); `j == columns()` is the force.
+    /// Returns column `j` (rows `0..=j`); `j == columns()` is the force.
     #[inline]
     pub fn column(&self, j: usize) -> &[Lanes] {
         &self.elements[column_start(j)..=column_start(j) + j]
     }
 
-    /// A row for [`Summary::add`].
+    /// Returns a row for [`Summary::add`].
     #[inline]
     pub(super) fn row(&self, features: &Features, force_n: Lanes) -> [Lanes; GRAM_ROW] {
         let mut row = [Lanes::ZERO; GRAM_ROW];
@@ -62,7 +61,7 @@ impl Gram {
 }
 
 impl Summary for Gram {
-    /// `columns` columns, then the force at index `columns`; the rest is ignored.
+    /// `columns` columns, then the force at index `columns`; further entries are ignored.
     type Row = [Lanes; GRAM_ROW];
 
     const BLANK_ROW: Self::Row = [Lanes::ZERO; GRAM_ROW];

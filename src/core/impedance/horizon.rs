@@ -1,4 +1,4 @@
-//! Which of the nested window solutions predicts the change of force best at the true delay.
+//! Selects the nested window solution that predicts the change of force best at the true delay.
 
 use super::{
     factor::column_start,
@@ -9,18 +9,18 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes, settled};
 
-/// Time constant of the running errors (s).
+/// Time constant of the running errors (s). Chosen as in `anchored.rs`.
 const MEMORY_S: f64 = 0.5;
-/// A correction may be this many times the change of force recently seen over the delay.
+/// A correction may be at most this many times the recent change of force over the delay. Chosen as in `anchored.rs`.
 const BOUND: f64 = 1.5;
-/// A candidate must do better than this share of the plain reflection's error.
+/// A candidate must achieve less than this fraction of the plain reflection's error.
 const MARGIN: f64 = 0.98;
-/// How often the solutions are renewed (Hz, at most once a tick): they are large, and hardly change in 5 ms.
+/// Renewals of the solutions per second (at most one per tick): they are large, and hardly change in 5 ms.
 const RENEW_HZ: f64 = 200.0;
 
-/// Keeps what every candidate (motion columns 0 to 15; 0 is no correction) would have foretold, and compares it with the
-/// change of force that then came. The prediction for time `s` uses the solution, the force and the features of `s - D` and
-/// the features of `s`, what a leader would have at `s`.
+/// Stores the predictions of every candidate (motion columns 0 to 15; 0 is no correction), and compares them with the
+/// change of force that followed. The prediction for time `s` uses the solution, the force and the features of `s - D`
+/// and the features of `s`, which are available to a leader at `s`.
 #[derive(Clone, Debug)]
 pub(super) struct Horizon {
     solutions: DelayLine<Increments>,
@@ -62,7 +62,7 @@ impl Horizon {
         }
     }
 
-    /// Goes on without judging: only what a later judgement needs is kept.
+    /// Advances without evaluating: only the data for later evaluations are stored.
     pub(super) fn rest(&mut self, features: &Features, force_n: Lanes) {
         self.keep(features, force_n);
         if self.tick.is_multiple_of(self.every)
@@ -77,7 +77,8 @@ impl Horizon {
         self.past.push(Past { features: *features, force_n, bound_n: BOUND * self.largest_change_n });
     }
 
-    /// Judges all candidates on the newest sample and returns the columns of the best. `good`: the force is a measurement.
+    /// Evaluates all candidates on the newest sample and returns the columns of the best. `good`: the force is a
+    /// measurement.
     pub(super) fn step(&mut self, solution: &Solution, features: &Features, force_n: Lanes, good: bool) -> usize {
         if good && self.delay_ticks > 0 {
             self.judge(features, force_n);
@@ -91,7 +92,7 @@ impl Horizon {
     }
 
     fn judge(&mut self, features: &Features, force_n: Lanes) {
-        // Before this tick is stored: the newest is one tick old.
+        // This runs before the tick is stored: the newest entry is one tick old.
         let Some(then) = self.past.get(self.delay_ticks - 1) else { return };
         let age = (self.tick - 1) / self.every - (self.tick - self.delay_ticks) / self.every;
         let Some(solution) = self.solutions.get(age) else { return };
@@ -111,7 +112,8 @@ impl Horizon {
         }
     }
 
-    /// Motion columns of the candidate with the least running error; 0 unless one is clearly better than no correction.
+    /// Returns the motion columns of the candidate with the smallest running error; 0 unless one is clearly better than
+    /// no correction.
     fn choice(&self) -> usize {
         let mut best = (0, MARGIN * self.errors_n[0]);
         for columns in 1..=self.candidates {
@@ -122,7 +124,7 @@ impl Horizon {
         best.0
     }
 
-    /// Judges at another delay from now on; what was learnt at the old one is forgotten.
+    /// Evaluates at another delay from now on and discards the errors of the old one.
     pub(super) fn set_delay(&mut self, delay_ticks: usize) {
         if delay_ticks != self.delay_ticks {
             self.delay_ticks = delay_ticks;
@@ -140,7 +142,8 @@ impl Horizon {
     }
 }
 
-/// What motion column `column` (1 to 15) adds to the coefficients of the motion columns up to itself; nothing for column 0.
+/// Returns the contribution of motion column `column` (1 to 15) to the coefficients of the motion columns up to itself;
+/// nothing for column 0.
 #[inline]
 fn part(increments: &Increments, column: usize) -> &[Lanes] {
     &increments[column_start(column) + 1..=column_start(column) + column]

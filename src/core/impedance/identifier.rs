@@ -1,4 +1,4 @@
-//! The follower's end: from samples to a parcel, and a report of how good it would have been.
+//! The follower's end: computes a packet from samples, and a report of its expected accuracy.
 
 use nalgebra::Vector3;
 
@@ -21,9 +21,11 @@ const ERROR_MEMORY_S: f64 = 0.5;
 
 /// Identifies the impedance in a sliding window, one [`Sample`] per tick.
 ///
-/// Each tick gives a [`Parcel`] for the link and a [`Report`] for the screen. Nothing is allocated after construction.
+/// Each tick produces a [`Parcel`] for the link and a [`Report`] for the screen. Nothing is allocated after
+/// construction.
 ///
-/// The follower feels a spring of 100 N/m. 50 ms later its parcel arrives at the leader, which renders the force for its own motion:
+/// The follower presses a spring of 100 N/m. 50 ms later its packet arrives at the leader, which renders the force for
+/// its own motion:
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -58,11 +60,11 @@ pub struct Identifier {
     last_t_s: f64,
     last_force_n: Lanes,
     computed: ModeSet,
-    /// Ticks since there was last something to learn.
+    /// Ticks since the last informative sample.
     idle_ticks: usize,
     methods: Methods,
     best: Option<Best>,
-    /// That of a leader that makes the follower's own motion.
+    /// Springs of a leader that makes the follower's own motion.
     slip: Slip,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
@@ -71,10 +73,10 @@ pub struct Identifier {
 }
 
 impl Identifier {
-    /// Allocates everything, rings for [`MAX_DELAY_S`] included.
+    /// Allocates all memory, including the ring buffers for [`MAX_DELAY_S`].
     ///
     /// # Errors
-    /// A setting outside of its range, by its name.
+    /// The name of the first setting that is out of its range.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let delay_ticks = settings.delay_ticks(settings.delay_s);
@@ -97,8 +99,8 @@ impl Identifier {
         })
     }
 
-    /// Computes only these modes from now on, of those in the settings (and delayed reflection, which costs nothing). A mode
-    /// that comes in begins to learn anew; one that is left out costs nothing. Nothing is allocated.
+    /// Computes only these modes from now on, as far as they are in the settings (and delayed reflection, which costs
+    /// nothing). A mode that is added restarts learning; a mode that is omitted costs nothing. Nothing is allocated.
     pub fn compute(&mut self, modes: ModeSet) {
         let modes = modes.with(Mode::Dfr).and(self.settings.modes);
         let before = std::mem::replace(&mut self.computed, modes);
@@ -117,10 +119,10 @@ impl Identifier {
             Report { t_s, modes, learnt, rejected, restarts, literal_failures, horizon_error_n, ..Report::BLANK };
     }
 
-    /// Takes one sample.
+    /// Adds one sample.
     ///
-    /// A sample whose numbers are not finite or absurd, or whose time does not advance, is counted as rejected: it leaves no
-    /// trace in the window, its motion is bridged, its force is the last good one.
+    /// A sample with non-finite or absurd numbers, or whose time does not advance, is counted as rejected: it does not
+    /// enter the window, its motion is bridged, and its force is replaced by the last good one.
     pub fn step(&mut self, sample: &Sample) {
         let axes = self.settings.axes;
         let advancing = sample.t_s.is_finite() && sample.t_s > self.last_t_s;
@@ -161,7 +163,7 @@ impl Identifier {
         self.predict(&now, &x, good);
     }
 
-    /// Whether nothing is to be learnt: for as long as a window there was no force, and none was rendered.
+    /// Returns whether the samples are uninformative: no force was measured or rendered for the length of a window.
     fn rests(&mut self, good: bool) -> bool {
         let rest_n = self.settings.rest_n;
         let within = |force_n: &Vector3<f64>| force_n.norm_squared() <= rest_n * rest_n;
@@ -172,7 +174,7 @@ impl Identifier {
         self.idle_ticks > 2 * self.settings.block()
     }
 
-    /// What every mode renders for this tick from the parcel one delay old, and its running error.
+    /// Computes the force of every mode for this tick from the packet that is one delay old, and its running error.
     fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
         let leader = self.methods.baseline.as_deref_mut().map(|baseline| &mut baseline.leader);
         let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
@@ -192,7 +194,7 @@ impl Identifier {
             let force = forces[mode.index()];
             self.report.prediction_n[mode.index()] = force.unwrap_or_default().vector();
             self.report.prediction_valid[mode.index()] = force.is_some();
-            // A mode that renders nothing errs by the whole force; before anything arrived nothing is judged.
+            // A mode that renders nothing errs by the whole force; before the first arrival nothing is evaluated.
             if good && self.computed.contains(mode) && forces[Mode::Dfr.index()].is_some() {
                 let error_n = (self.last_force_n - force.unwrap_or_default()).norm();
                 let mean = &mut self.report.horizon_error_n[mode.index()];
@@ -201,33 +203,33 @@ impl Identifier {
         }
     }
 
-    /// The parcel made from the newest sample.
     pub fn parcel(&self) -> &Parcel {
         &self.parcel
     }
 
-    /// The report of the newest sample.
     pub fn report(&self) -> &Report {
         &self.report
     }
 
-    /// Every nested solution on the newest window, in scaled columns (N); `None` unless both anchored and literal are computed.
+    /// Returns every nested solution on the newest window, in scaled columns (N); `None` unless both anchored and
+    /// literal are computed.
     pub fn solution(&self) -> Option<&Solution> {
         self.methods.degrees.as_ref().map(|degrees| degrees.solution())
     }
 
-    /// The paper's solutions of every degree on the newest window; `None` if neither literal nor linear is computed.
+    /// Returns the paper's solutions of every degree on the newest window; `None` if neither literal nor linear is
+    /// computed.
     pub fn literal(&self) -> Option<&LiteralSolver> {
         self.methods.literal.as_ref().or(self.methods.linear.as_ref()).map(|paper| paper.solver())
     }
 
-    /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The judge of anchored rendering begins anew.
+    /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The evaluation of anchored rendering
+    /// restarts.
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
         self.methods.each().for_each(|method| method.set_delay(self.delay_ticks));
     }
 
-    /// Forgets everything, counters included, without allocating.
     pub fn reset(&mut self) {
         self.track.reset();
         self.last_t_s = f64::NEG_INFINITY;

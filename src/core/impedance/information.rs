@@ -1,9 +1,10 @@
-//! How much the motion in a window tells of the impedance.
+//! Measures how much information about the impedance the motion in a window contains.
 
 use super::{factor::Factor, messages::Excitation, settings::Settings};
 use crate::signal::Lanes;
 
-/// Motion columns whose part orthogonal to the columns before them outweighs the ridge (and rounding), the fewest of the axes.
+/// Returns the number of motion columns whose part orthogonal to the preceding columns exceeds the ridge (and
+/// rounding), on the axis with the fewest.
 pub(super) fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
     let mut ranks = [0_u8; 4];
     for j in 1..factor.columns() {
@@ -17,7 +18,8 @@ pub(super) fn rank(factor: &Factor, ridge: f64, axes: usize) -> u8 {
     ranks[..axes].iter().copied().min().unwrap_or(0)
 }
 
-/// Standard deviations of x, v and a in the window, from the first columns of the factor without the constant's row.
+/// Returns the standard deviations of x, v and a in the window, from the first columns of the factor without the
+/// constant's row.
 pub(super) fn excitation(factor: &Factor, ridge: f64, settings: &Settings) -> Excitation {
     let rows = factor.column(0)[0];
     let deviation = |j: usize, scale: f64| {

@@ -1,4 +1,5 @@
-//! The paper to the letter: `M = F X^T (X X^T)^-1` per axis and degree, and the degree with the least error in the window.
+//! The paper's method to the letter: `M = F X^T (X X^T)^-1` per axis and degree, and the degree with the smallest error
+//! in the window.
 
 use super::{
     MAX_DEGREE,
@@ -12,9 +13,9 @@ use crate::signal::{LANES, Lanes};
 
 /// Solves the normal equations of every degree from one Cholesky factorisation of the largest Gram matrix.
 ///
-/// Raw SI columns, no pivoting, no cut-off, and unless the [`Recipe`] says otherwise no constant and no ridge: where the matrix
-/// is not positive definite in floating point, or a number is not finite, that axis and degree has *failed*; it is counted,
-/// its coefficients are zero and its error is the whole force. Nothing else is done about it.
+/// Raw SI columns, no pivoting, no cut-off, and unless the [`Recipe`] says otherwise no constant and no ridge: where
+/// the matrix is not positive definite in floating point, or a number is not finite, that axis and degree has *failed*:
+/// the failure is counted, the coefficients are zero and the error is the whole force. No other remedy is applied.
 #[derive(Clone, Debug)]
 pub struct LiteralSolver {
     max_degree: usize,
@@ -26,7 +27,7 @@ pub struct LiteralSolver {
 }
 
 impl LiteralSolver {
-    /// A solver for degrees `1..=max_degree` of the first `axes` lanes.
+    /// Creates a solver for degrees `1..=max_degree` of the first `axes` lanes.
     pub fn new(max_degree: usize, axes: usize, recipe: &Recipe, scales: &Scales) -> Self {
         Self {
             max_degree,
@@ -47,7 +48,7 @@ impl LiteralSolver {
             let columns = first + 3 * degree;
             let mut m = back_substitute(&r, columns, n);
             let squares = residual_squares(gram, &m, columns);
-            // Not finite in a lane where any coefficient or the error is not.
+            // This sum is not finite in a lane where any coefficient or the error is not.
             let finite = m[..columns].iter().fold(squares, |sum, m| sum + *m * 0.0);
             let solved: [bool; LANES] =
                 std::array::from_fn(|lane| lane < self.axes && definite[lane] >= columns && finite[lane].is_finite());
@@ -68,7 +69,7 @@ impl LiteralSolver {
         }
     }
 
-    /// What is added to the pivots.
+    /// Returns the values to add to the pivots.
     fn ridge(&self, first: usize, rows: usize) -> [f64; GRAM_ROW] {
         let mut ridge = [0.0; GRAM_ROW];
         for (ridge, penalty) in ridge[first..].iter_mut().zip(self.penalty) {
@@ -77,27 +78,27 @@ impl LiteralSolver {
         ridge
     }
 
-    /// The fit of `degree` (1-based), zero where that axis failed; none where every axis failed.
+    /// Returns the fit of `degree` (1-based): zero on a failed axis, no model if every axis failed.
     pub fn model(&self, degree: usize) -> &LiteralModel {
         degree.checked_sub(1).and_then(|index| self.models.get(index)).unwrap_or(&LiteralModel::NONE)
     }
 
-    /// Coefficients of `degree` (1-based), SI units, zero beyond `3 * degree` and where that axis failed.
+    /// Returns the coefficients of `degree` (1-based), SI units, zero beyond `3 * degree` and on a failed axis.
     pub fn coefficients(&self, degree: usize) -> &[Lanes; MOTION_COLUMNS] {
         &self.models[degree.clamp(1, MAX_DEGREE) - 1].coefficients
     }
 
-    /// Root mean square 3-D error (N) inside the window with `degree`.
+    /// Returns the root mean square 3-D error (N) inside the window with `degree`.
     pub fn window_error_n(&self, degree: usize) -> f64 {
         self.error_n[degree.clamp(1, MAX_DEGREE) - 1]
     }
 
-    /// Whether at least one axis was solved with `degree`.
+    /// Returns whether at least one axis was solved with `degree`.
     pub fn is_solved(&self, degree: usize) -> bool {
         self.model(degree).degree > 0
     }
 
-    /// The paper's choice: the degree with the least 3-D error inside the window; 0 if none could be solved.
+    /// Returns the paper's choice: the degree with the smallest 3-D error inside the window; 0 if none could be solved.
     pub fn choice(&self) -> usize {
         (1..=self.max_degree)
             .filter(|&degree| self.is_solved(degree))
@@ -105,12 +106,11 @@ impl LiteralSolver {
             .unwrap_or(0)
     }
 
-    /// Solves (one per tick, axis and degree) that failed since construction or reset.
+    /// Returns the number of failed solves (one per tick, axis and degree) since construction or reset.
     pub fn failures(&self) -> u64 {
         self.failures
     }
 
-    /// Forgets all solutions and the count of failures.
     pub fn reset(&mut self) {
         self.models = [LiteralModel::NONE; MAX_DEGREE];
         self.error_n = [f64::INFINITY; MAX_DEGREE];
@@ -120,8 +120,8 @@ impl LiteralSolver {
 
 type Triangle = [Lanes; GRAM_ROW * (GRAM_ROW + 1) / 2];
 
-/// `R` with `R^T R = [X; f] [X; f]^T` (the force column too), and for each lane how many leading pivots were positive. `ridge` is added
-/// to the diagonal of `X X^T`.
+/// Returns `R` with `R^T R = [X; f] [X; f]^T` (the force column too), and for each lane how many leading pivots were
+/// positive. `ridge` is added to the diagonal of `X X^T`.
 fn cholesky(gram: &Gram, ridge: &[f64; GRAM_ROW]) -> (Triangle, [usize; LANES]) {
     let n = gram.columns();
     let mut r = [Lanes::ZERO; GRAM_ROW * (GRAM_ROW + 1) / 2];
@@ -153,7 +153,7 @@ fn cholesky(gram: &Gram, ridge: &[f64; GRAM_ROW]) -> (Triangle, [usize; LANES]) 
     (r, definite)
 }
 
-/// Solves `R_p M = z_p` for the leading `columns` columns; `n` is the column of the right-hand side.
+/// Solves `R_p M = z_p` for the leading `columns` columns; column `n` is the right-hand side.
 fn back_substitute(r: &Triangle, columns: usize, n: usize) -> [Lanes; GRAM_ROW] {
     let mut m = [Lanes::ZERO; GRAM_ROW];
     let z = column_start(n);
@@ -169,7 +169,7 @@ fn back_substitute(r: &Triangle, columns: usize, n: usize) -> [Lanes; GRAM_ROW] 
     m
 }
 
-/// `|f - M X|^2` over the window from the sums: `f f^T - 2 M X f^T + M X X^T M^T`.
+/// Returns `|f - M X|^2` over the window from the sums: `f f^T - 2 M X f^T + M X X^T M^T`.
 fn residual_squares(gram: &Gram, m: &[Lanes; GRAM_ROW], columns: usize) -> Lanes {
     let n = gram.columns();
     let force = gram.column(n);

@@ -1,4 +1,4 @@
-//! What goes in, what goes over the link, and what is shown.
+//! Input, link data and report of the identification.
 
 use nalgebra::Vector3;
 
@@ -13,10 +13,10 @@ use super::{
 };
 use crate::signal::{LANES, Lanes};
 
-/// One tick at the follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Time (s); must advance from sample to sample. The samples are taken to be evenly spaced at the settings' rate.
+    /// Time (s); must increase from sample to sample. The samples are assumed to be evenly spaced at the rate of the
+    /// settings.
     pub t_s: f64,
     /// Tip position in the workspace frame (m); axes not in use are ignored.
     pub position_m: Vector3<f64>,
@@ -27,58 +27,56 @@ pub struct Sample {
 /// Parameters of the paper's model `f = M X`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiteralModel {
-    /// Degree `N`; 0: none could be solved.
+    /// Degree `N`; 0 if none could be solved.
     pub degree: u8,
     /// Constant force (N); zero unless the recipe has one.
     pub constant_n: Lanes,
-    /// `M`: the first `3 N` are in use, N per SI unit of the feature.
+    /// `M`: the first `3 N` entries are in use, N per SI unit of the feature.
     pub coefficients: [Lanes; MOTION_COLUMNS],
 }
 
 impl LiteralModel {
-    /// No model.
     pub const NONE: Self = Self { degree: 0, constant_n: Lanes::ZERO, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
 
-    /// `M X` (N), `X` in SI units as the recipe reads it.
+    /// Returns `M X` (N), `X` in SI units as the recipe defines it.
     #[inline]
     pub(super) fn product(&self, x: &Features) -> Lanes {
         let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
         terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
     }
 
-    /// The same; `None` without a model or where the product is not finite.
+    /// Returns `M X` (N); `None` without a model or if the product is not finite.
     pub(super) fn force(&self, x: &Features) -> Option<Lanes> {
         let force = self.product(x);
         (self.degree > 0 && force.is_finite()).then_some(force)
     }
 }
 
-/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
+/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts combined into one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnchoredModel {
-    /// N per change of position (m), of its differences from four low-passes (m), of friction
-    /// (1), of square, cube and product of the position about the centre (m², m³, m²).
+    /// N per change of position (m), of its differences from four low-passes (m), of friction (1), and of square, cube
+    /// and product of the position about the centre (m², m³, m²).
     pub motion: [Lanes; 9],
-    /// What the follower alone knows: the change expected without any motion (N).
+    /// The follower's own contribution: the change expected without any motion (N).
     pub constant_n: Lanes,
     /// Slow mean of the follower's position (m).
     pub centre_m: Lanes,
-    /// Where friction saturates (m).
+    /// Motion at which friction saturates (m).
     pub knee: Lanes,
-    /// Least force rendered (N): forces beyond those seen are not invented.
+    /// Minimum rendered force (N): the range of past forces is not exceeded.
     pub low_n: Lanes,
-    /// Greatest force rendered (N).
+    /// Maximum rendered force (N).
     pub high_n: Lanes,
-    /// Largest correction (N, norm over the axes).
+    /// Maximum correction (N, norm over the axes).
     pub bound_n: f64,
-    /// Highest power of the position in the model that most of the weight is on, 1 or 3; 0 without a correction.
+    /// Highest power of the position in the model with the largest weight, 1 or 3; 0 without a correction.
     pub degree: u8,
-    /// How much of a full correction this is, 0 (plain reflection) to 1, on the axis that is corrected most.
+    /// Fraction of a full correction, 0 (plain reflection) to 1, on the axis with the largest correction.
     pub gain: f64,
 }
 
 impl AnchoredModel {
-    /// No correction.
     pub const NONE: Self = Self {
         motion: [Lanes::ZERO; 9],
         constant_n: Lanes::ZERO,
@@ -91,8 +89,8 @@ impl AnchoredModel {
         gain: 0.0,
     };
 
-    /// The force (N) for the motion now, from the force and the motion at the anchor. The force as it came where nothing is
-    /// corrected or the correction is not finite.
+    /// Returns the force (N) for the current motion, from the force and the motion at the anchor. The force is returned
+    /// unchanged if it is not corrected or the correction is not finite.
     pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
         if self.gain <= 0.0 {
             return measured;
@@ -107,7 +105,7 @@ impl AnchoredModel {
     }
 }
 
-/// One end's motion at one tick, as the models see it.
+/// One end's motion at one tick, in the form that the models use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Posture {
     pub(super) features: Features,
@@ -118,7 +116,7 @@ impl Posture {
     pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance::BLANK };
 }
 
-/// Shortens a force to `bound_n`; zero where it is not finite.
+/// Returns the force shortened to `bound_n`; zero if it is not finite.
 #[inline]
 pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
     let norm = force.norm();
@@ -131,35 +129,28 @@ pub(super) fn clip(force: Lanes, bound_n: f64) -> Lanes {
     }
 }
 
-/// What the follower sends over the link each tick: fixed size, plain numbers.
+/// Data that the follower sends over the link each tick: fixed size, plain numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parcel {
-    /// Time of the sample it was made from (s).
     pub t_s: f64,
-    /// Tip force at that time (N); the last good one if that sample was rejected.
+    /// Tip force at that time (N); the last good one if the sample was rejected.
     pub force_n: Vector3<f64>,
-    /// Whether that sample was good.
+    /// Whether the sample was good.
     pub fresh: bool,
-    /// Whether the identification rested: there was no contact.
+    /// Whether the identification rested because there was no contact.
     pub resting: bool,
-    /// The modes that were computed; nothing is rendered in the others.
+    /// The computed modes; no force is rendered in the others.
     pub modes: ModeSet,
-    /// The paper's choice.
     pub literal: LiteralModel,
-    /// The paper's linear model.
     pub linear: LiteralModel,
-    /// Anchored rendering's choice.
     pub anchored: AnchoredModel,
-    /// Matched rendering's parameters.
     pub matched: MatchedModel,
-    /// The same in the paper's columns.
+    /// Matched rendering's parameters in the paper's columns.
     pub nima: MatchedModel,
-    /// What the baseline needs, where one is computed.
     pub baseline: BaselineModel,
 }
 
 impl Parcel {
-    /// Nothing measured yet.
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,
         force_n: Vector3::new(0.0, 0.0, 0.0),
@@ -174,10 +165,11 @@ impl Parcel {
         baseline: BaselineModel::Nothing,
     };
 
-    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` from the motion now and at
-    /// the time of the parcel, `literal` from `x`, the paper's `X` now, `matched` with this end's `slip`. `anchored_weight`: that of
-    /// anchored rendering in the best of both, 0 to 1. `baseline`: that mode's force, which has a state of its own
-    /// at the leader. Nothing is made of a force that is not finite: limits would turn it into one of their edges.
+    /// Returns the force of every mode for the current motion, by [`Mode::index`](super::Mode::index): `anchored` from
+    /// the motion now and at the time of the packet, `literal` from `x`, the paper's current `X`, `matched` with this
+    /// end's `slip`. `anchored_weight`: weight of anchored rendering in the best of both, 0 to 1. `baseline`: that
+    /// mode's force, whose state is at the leader. A non-finite force gives no result, because limits would turn it
+    /// into one of their bounds.
     pub(super) fn render(
         &self,
         now: &Posture,
@@ -211,17 +203,17 @@ impl Parcel {
     }
 }
 
-/// Forces rendered at the leader, unclamped (the gates of `safety` come after).
+/// Forces rendered at the leader, not yet limited (the gates of `safety` follow).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rendered {
-    /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero where not valid.
+    /// Force of every mode (N), by [`Mode::index`](super::Mode::index); zero if not valid.
     pub force_n: [Vector3<f64>; SLOTS],
-    /// Whether that mode had something to render, and it was finite.
+    /// Whether the mode had a finite force to render.
     pub valid: [bool; SLOTS],
 }
 
 impl Rendered {
-    /// Force of `mode` (N); `None` where it has nothing valid.
+    /// Returns the force of `mode` (N); `None` if it has no valid force.
     pub fn force(&self, mode: Mode) -> Option<Vector3<f64>> {
         self.valid[mode.index()].then(|| self.force_n[mode.index()])
     }
@@ -231,7 +223,6 @@ impl Rendered {
     }
 }
 
-/// Standard deviation of the motion inside the window, per axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Excitation {
     pub position_m: Vector3<f64>,
@@ -239,60 +230,59 @@ pub struct Excitation {
     pub acceleration_m_s2: Vector3<f64>,
 }
 
-/// Everything the screen and the trace show of one tick.
+/// Data of one tick for the screen and the trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// Time of the newest sample (s).
     pub t_s: f64,
-    /// The modes that are computed.
     pub modes: ModeSet,
-    /// Whether the identification rests: there is no contact, and nothing to learn.
+    /// Whether the identification rests, because there is no contact and nothing to learn.
     pub resting: bool,
-    /// Samples that were learnt from so far.
     pub learnt: u64,
-    /// For each mode the force (N) for this time made from data up to `t - D` and the follower's motion at `t`.
+    /// Force of each mode (N) for this time, computed from data up to `t - D` and the follower's motion at `t`.
     pub prediction_n: [Vector3<f64>; SLOTS],
     /// Whether that prediction exists and is finite; it is zero otherwise.
     pub prediction_valid: [bool; SLOTS],
     /// Force minus `M X` (N) at the newest sample, for each literal degree fitted on the window that ends with it.
     pub reconstruction_n: [Vector3<f64>; MAX_DEGREE],
-    /// The paper's choice of the degree, as the recipe makes it; 0 while the window is not full or nothing can be solved.
+    /// The paper's choice of the degree, by the recipe; 0 while the window is not full or no degree can be solved.
     pub paper_degree: u8,
-    /// Degree of anchored rendering: the highest power of the position in the model that most of the weight is on, 1 or 3; 0: no
-    /// correction.
+    /// Degree of anchored rendering: the highest power of the position in the model with the largest weight, 1 or 3; 0
+    /// without a correction.
     pub degree: u8,
-    /// Degree of the matched model with the largest weight; 0 while nothing is known.
+    /// Degree of the matched model with the largest weight; 0 before anything is known.
     pub matched_degree: u8,
-    /// The same in the paper's columns.
+    /// Degree of matched rendering in the paper's columns.
     pub nima_degree: u8,
-    /// Motion columns of the nested solution on the window which predicts force best at the horizon, 0 (none) to 15: three per
-    /// degree (x, v, a). This, condition, rank and excitation are made only where anchored and literal are compared.
+    /// Motion columns of the nested window solution that predicts the force best at the prediction horizon, 0 (none) to
+    /// 15: three per degree (x, v, a). Like condition, rank and excitation it is computed only where anchored and
+    /// literal are compared.
     pub columns: u8,
-    /// How much of a full correction anchored rendering makes, 0 (plain reflection) to 1.
+    /// Fraction of a full correction that anchored rendering makes, 0 (plain reflection) to 1.
     pub gain: f64,
-    /// Condition (scaled columns) of those columns, the worst of the axes; of the constant and `x` if nothing is chosen.
+    /// Condition number (scaled columns) of those columns, on the worst axis; of the constant and `x` if no columns are
+    /// chosen.
     pub condition: f64,
-    /// Motion columns that carry more information than the ridge, the fewest of the axes.
+    /// Motion columns with more information than the ridge, on the axis with the fewest.
     pub rank: u8,
-    /// How much the motion in the window varies.
+    /// Variation of the motion in the window.
     pub excitation: Excitation,
-    /// Samples rejected so far (not finite, absurd, or time not advancing).
+    /// Number of rejected samples so far (not finite, absurd, or time not advancing).
     pub rejected: u64,
-    /// How often anchored rendering had to begin learning anew because a number was not finite.
+    /// Number of times that anchored rendering had to restart learning because a number was not finite.
     pub restarts: u64,
-    /// Literal solves (one per tick, axis and degree) that failed so far.
+    /// Number of failed literal solves so far (one per tick, axis and degree).
     pub literal_failures: u64,
-    /// Running mean (about 0.5 s) of each mode's 3-D error at the horizon (N).
+    /// Running mean (about 0.5 s) of each mode's 3-D error at the prediction horizon (N).
     pub horizon_error_n: [f64; SLOTS],
 }
 
 impl Report {
-    /// What `mode` would render now (N) from data up to `t - D`; `None` where it has nothing valid.
+    /// Returns the force that `mode` would render now (N) from data up to `t - D`; `None` if it has no valid force.
     pub fn prediction(&self, mode: Mode) -> Option<Vector3<f64>> {
         self.prediction_valid[mode.index()].then(|| self.prediction_n[mode.index()])
     }
 
-    /// The degree that `mode` uses; 0: none.
+    /// Returns the degree that `mode` uses; 0: none.
     pub fn degree_of(&self, mode: Mode) -> u8 {
         match mode {
             Mode::Literal => self.paper_degree,
@@ -304,7 +294,6 @@ impl Report {
         }
     }
 
-    /// Nothing measured yet.
     pub const BLANK: Self = Self {
         t_s: f64::NEG_INFINITY,
         modes: ModeSet::only(Mode::Dfr),
@@ -333,7 +322,7 @@ impl Report {
     };
 }
 
-/// Zeroes the lanes of axes not in use.
+/// Sets the lanes of unused axes to zero.
 pub(super) fn active(vector: &Vector3<f64>, axes: usize) -> Lanes {
     let mut lanes = Lanes::from(*vector);
     for lane in axes..LANES {

@@ -1,4 +1,4 @@
-//! The follower's part of each way to render, as one list.
+//! The follower's part of each rendering method, as one list.
 
 use super::{
     Mode,
@@ -13,49 +13,44 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// What a method sees of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<'a> {
     pub(super) posture: &'a Posture,
     /// The paper's `X`.
     pub(super) x: &'a Features,
-    /// The force, or the last good one, N.
+    /// The force, or the last good force, N.
     pub(super) force_n: Lanes,
     /// The sample was measured, not bridged.
     pub(super) good: bool,
-    /// Its features are those of a full filter, too.
+    /// The features come from a full filter, too.
     pub(super) usable: bool,
-    /// There is something to learn from.
     pub(super) learn: bool,
-    /// The parcel that the leader has now; without a delay the last one stands for it.
+    /// The packet that the leader has now; without a delay the last one.
     pub(super) sent: Option<&'a Parcel>,
 }
 
-/// The follower's part of a way to render: learns from samples and writes its parameters into the parcel.
+/// The follower's part of a rendering method: learns from samples and writes its parameters into the packet.
 pub(super) trait Method {
-    /// Whether it is at work while these modes are computed.
+    /// Returns whether the method runs while these modes are computed.
     fn serves(&self, modes: ModeSet) -> bool;
 
-    /// Whether it begins again when the modes `now` take the place of those `before`.
+    /// Returns whether the method restarts when the modes change from `before` to `now`.
     fn begins(&self, before: ModeSet, now: ModeSet) -> bool {
         self.serves(now) && !self.serves(before)
     }
 
-    /// Takes the newest sample.
     fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report);
 
-    /// Learns what happens over another delay from now on.
     fn set_delay(&mut self, _delay_ticks: usize) {}
 
-    /// Forgets everything.
     fn reset(&mut self);
 }
 
-/// The methods that there is memory for.
+/// The methods for which memory is allocated.
 #[derive(Clone, Debug)]
 pub(super) struct Methods {
     pub(super) literal: Option<Box<Paper>>,
-    /// The paper's linear model alone, where that is all that is computed.
+    /// The paper's linear model, if it is computed without the others.
     pub(super) linear: Option<Box<Paper>>,
     anchored: Option<Box<Anchored>>,
     /// The degrees of the window's impedance, where anchored is compared with the paper.
@@ -82,7 +77,7 @@ impl Methods {
         }
     }
 
-    /// Each of them, in the order in which they work.
+    /// Returns the methods in their order of execution.
     pub(super) fn each(&mut self) -> impl Iterator<Item = &mut dyn Method> {
         fn entry<M: Method>(method: &mut Option<Box<M>>) -> Option<&mut dyn Method> {
             method.as_deref_mut().map(|method| method as &mut dyn Method)

@@ -1,17 +1,18 @@
-//! How far each expert is to be trusted: a softmin of the errors at the true horizon.
+//! Weights of the experts: a softmin of their errors at the true prediction horizon.
 
 use super::best::eighth_power;
 use crate::signal::Lanes;
 
-/// Memory of the errors (s).
+/// Memory of the errors (s). Chosen as in `anchored.rs`.
 const MEMORY_S: f64 = 1.0;
-/// Full trust needs that much evidence (s).
+/// Amount of evidence needed for full trust (s).
 const RAMP_S: f64 = 0.1;
-/// Errors below this are equal (N).
+/// Errors below this count as equal (N): below it the weights would divide rounding by rounding.
 const EQUAL_N: f64 = 1e-12;
 
-/// Weights, per axis, of `EXPERTS` predicted changes of force: the eighth power of the least running error over each one's own. No
-/// change of force (plain reflection) is judged beside them; its weight is what is missing to one.
+/// Weights, per axis, of `EXPERTS` predicted changes of force: the eighth power of the smallest running error over each
+/// expert's own. No change of force (plain reflection) is evaluated with them; its weight is the difference between one
+/// and their sum.
 #[derive(Clone, Debug)]
 pub(super) struct Mixture<const EXPERTS: usize> {
     rate_hz: f64,
@@ -27,13 +28,12 @@ impl<const EXPERTS: usize> Mixture<EXPERTS> {
         Self { rate_hz, judged: 0.0, errors_n: none, held_n: Lanes::ZERO, weights: none }
     }
 
-    /// The weights in force.
     pub(super) const fn weights(&self) -> &[Lanes; EXPERTS] {
         &self.weights
     }
 
-    /// Judges what the experts said one delay ago (N) by the change of force that came. The error of reflection is taken for
-    /// `caution` times what it is.
+    /// Evaluates the experts' predictions of one delay ago (N) by the actual change of force. The error of reflection
+    /// counts `caution` times.
     pub(super) fn judge(&mut self, said: &[Lanes; EXPERTS], change: Lanes, caution: f64) {
         self.judged += 1.0;
         let share = 1.0 / self.judged.min(MEMORY_S * self.rate_hz);
@@ -50,7 +50,7 @@ impl<const EXPERTS: usize> Mixture<EXPERTS> {
         self.weights = self.errors_n.map(odds);
         let sum = self.weights.iter().fold(odds(held_n), |sum, weight| sum + *weight);
         let trust = (self.judged / (RAMP_S * self.rate_hz)).min(1.0);
-        // Where the force has not changed nobody erred, and nothing is known.
+        // If the force has not changed, no expert erred and nothing is known.
         let known = self.held_n.map(|held_n| if held_n > EQUAL_N { trust } else { 0.0 });
         let scale = sum.recip_or_zero() * known;
         self.weights.iter_mut().for_each(|weight| *weight *= scale);
@@ -83,7 +83,10 @@ mod tests {
     fn where_no_expert_is_better_than_reflection_nothing_is_added() {
         let [one, other] = judged([3.0, -0.8], 1.0, 1.0);
         assert!(one + other < 0.02, "{one} {other}");
-        assert!(judged([0.0, 0.0], 0.0, 1.0).iter().all(|weight| *weight <= 0.0), "nobody erred, and nothing is known");
+        assert!(
+            judged([0.0, 0.0], 0.0, 1.0).iter().all(|weight| *weight <= 0.0),
+            "no expert erred, and nothing is known"
+        );
     }
 
     #[test]

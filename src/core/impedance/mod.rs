@@ -1,28 +1,28 @@
-//! The heart: from motion and tip force to an impedance `f = M X`, and from `M` back to a force for the hand.
+//! Identification and rendering: from motion and tip force to an impedance `f = M X`, and from `M` back to a force for
+//! the hand.
 //!
 //! Takes: tip positions (m, workspace frame) and tip forces (N, same frame), one [`Sample`] per tick at a fixed rate.
-//! Gives: a [`Parcel`] of parameters for the link (follower side, [`Identifier`]) and a force (N) rendered from the leader's
-//! own motion (leader side, [`Renderer`]). Pure and deterministic; nothing is allocated after construction; it knows no
-//! device, file or thread.
-//! Bad input (NaN, infinite, absurdly large, or a time stamp that does not advance) is counted, left out of the window, and
-//! bridged by a prediction of the motion; it never reaches a parameter. What is not handled here: dead band, gain, ceiling
-//! and age of the rendered force; those are the gates of `safety`.
+//! Returns: a [`Parcel`] of parameters for the link (follower side, [`Identifier`]) and a force (N) rendered from the
+//! leader's own motion (leader side, [`Renderer`]). Pure and deterministic; nothing is allocated after construction; no
+//! devices, files or threads are used. Bad input (NaN, infinite, absurdly large, or a time stamp that does not advance)
+//! is counted, left out of the window, and bridged by a prediction of the motion; it never reaches a parameter. Dead
+//! band, gain, ceiling and age of the rendered force are not handled here; the gates of `safety` handle them.
 //!
-//! | file | holds |
-//! |---|---|
-//! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
-//! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
-//! | `paper`, `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
-//! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
-//! | `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
-//! | `anchored`, `regressors`, `regression`, `mixture` | anchored rendering: experts and their trust |
-//! | `best` | a softmin over anchored and matched rendering, judged by the leader |
-//! | `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
-//! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
-//! | `baselines` | methods of others, to compare with; at most one is computed |
-//! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
-//! | `method` | the follower's part of each way to render, as one list |
-//! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
+//!  file | content |
+//! ---|---|
+//!  `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
+//!  `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
+//!  `paper`, `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
+//!  `recipe` | interpretation of the paper where it leaves a choice; the choice of the degree by the data after the window |
+//!  `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
+//!  `anchored`, `regressors`, `regression`, `mixture` | anchored rendering: experts and their weights |
+//!  `best` | a softmin over anchored and matched rendering, evaluated by the leader |
+//!  `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
+//!  `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
+//!  `baselines` | published methods for comparison; at most one is computed |
+//!  `pace`, `envelope` | a clock that motion drives; the range of past forces |
+//!  `method` | the follower's part of each rendering method, as one list |
+//!  `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and the data between them |
 
 mod anchored;
 mod baselines;
@@ -80,7 +80,7 @@ pub use settings::{MAX_DELAY_S, ModeSet, OwnMotion, Settings, SettingsError};
 pub use solution::Solution;
 pub use window::{SlidingWindow, Summary};
 
-/// Axes handled in parallel: x, y, z of the workspace.
+/// Number of axes handled in parallel: x, y, z of the workspace.
 pub const AXES: usize = 3;
 /// Highest polynomial degree `N` of the motion features (the paper's five).
 pub const MAX_DEGREE: usize = 5;

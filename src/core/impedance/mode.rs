@@ -1,18 +1,18 @@
-//! The ways of turning measured force into rendered force.
+//! The methods that turn measured force into rendered force.
 
 use std::{fmt, str::FromStr};
 
 use serde::{Deserialize, Serialize};
 
-/// A method of others, computed to compare with; see the folder `impedance/baselines`.
+/// A published method for comparison; see the folder `impedance/baselines`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Baseline {
     /// Model-mediated teleoperation: a Hunt-Crossley contact by recursive least squares.
     ModelMediated,
-    /// Wave variables, the way back.
+    /// Wave variables, return channel.
     Waves,
-    /// Time-domain passivity with the energy that the tissue returned, the way back.
+    /// Time-domain passivity with the energy that the tissue returned, return channel.
     Passivity,
     /// Extrapolation by a Kalman filter of force and its rate.
     Kalman,
@@ -21,10 +21,9 @@ pub enum Baseline {
 }
 
 impl Baseline {
-    /// Every baseline.
     pub const ALL: [Self; 5] = [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive];
 
-    /// The name used on the command line, in files and on the screen.
+    /// Returns the name used on the command line, in files and on the screen.
     pub const fn name(self) -> &'static str {
         match self {
             Self::ModelMediated => "model_mediated",
@@ -36,7 +35,7 @@ impl Baseline {
     }
 }
 
-/// How the force for the hand is made from the follower's measurements.
+/// Method that computes the force for the hand from the follower's measurements.
 ///
 /// ```
 /// use nima_core::impedance::{Baseline, Mode};
@@ -58,26 +57,25 @@ pub enum Mode {
     Dfr,
     /// Anchored rendering: the last measured force, corrected by the identified impedance over the link's delay.
     Anchored,
-    /// Matched rendering: parameters cross the link, the force is made of the hand's own motion (NIMA as it was meant).
+    /// Matched rendering: parameters cross the link, and the force is computed from the hand's own motion (NIMA as
+    /// intended).
     Matched,
     /// The paper's columns under the rules of matched rendering.
     Nima,
-    /// Anchored and matched rendering, weighted by their errors of late.
+    /// Anchored and matched rendering, weighted by their recent errors.
     Best,
-    /// A method of others, to compare with.
     Baseline(Baseline),
 }
 
 /// Number of the program's own modes.
 pub const MODES: usize = 7;
-/// Entries of a table of modes: the program's own, and the one baseline that may be computed beside them.
+/// Number of entries in a table of modes: the program's own, and the one baseline that may be computed with them.
 pub const SLOTS: usize = MODES + 1;
 
 impl Mode {
     /// The program's own modes, in the order of [`Mode::index`].
     pub const ALL: [Self; MODES] =
         [Self::Literal, Self::Linear, Self::Dfr, Self::Anchored, Self::Matched, Self::Nima, Self::Best];
-    /// Every baseline as a mode.
     pub const BASELINES: [Self; Baseline::ALL.len()] = {
         let mut modes = [Self::Dfr; Baseline::ALL.len()];
         let mut i = 0;
@@ -88,7 +86,8 @@ impl Mode {
         modes
     };
 
-    /// Its entry in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], and the last one for whichever baseline is computed.
+    /// Returns the entry in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], or the last entry for whichever
+    /// baseline is computed.
     pub const fn index(self) -> usize {
         match self {
             Self::Literal => 0,
@@ -102,17 +101,18 @@ impl Mode {
         }
     }
 
-    /// Whether it is fitted to a window of samples, whose length is then a setting of it. The others fade by their own memories.
+    /// Returns whether the mode is fitted to a window of samples, whose length is then one of its settings. The others
+    /// forget with their own memories.
     pub const fn has_window(self) -> bool {
         matches!(self, Self::Literal | Self::Linear | Self::Nima)
     }
 
-    /// Whether it chooses among polynomial degrees, the highest of which is then a setting of it.
+    /// Returns whether the mode chooses among polynomial degrees, the highest of which is then one of its settings.
     pub const fn has_degrees(self) -> bool {
         matches!(self, Self::Literal | Self::Nima)
     }
 
-    /// The name used on the command line, in files and on the screen.
+    /// Returns the name used on the command line, in files and on the screen.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Literal => "literal",
@@ -147,15 +147,14 @@ impl fmt::Display for Mode {
     }
 }
 
-/// A word that names no mode.
+/// A word that is not the name of a mode.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "no mode is called \"{word}\"; use one of {}, or a baseline: {}",
+    "unknown mode \"{word}\": use one of {}, or a baseline: {}",
     Mode::ALL.map(Mode::name).join(", "),
     Mode::BASELINES.map(Mode::name).join(", ")
 )]
 pub struct ParseModeError {
-    /// The word as given.
     pub word: String,
 }
 

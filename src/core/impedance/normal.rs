@@ -1,17 +1,17 @@
-//! Normal equations of all axes at once: sums of products that fade, their factor, and its nested solutions.
+//! Normal equations of all axes at once: sums of products with forgetting, their factor, and its nested solutions.
 //!
-//! Upper triangles are packed by columns. These loops are most of a tick, so they run in the widest vectors of the computer.
+//! Upper triangles are packed by columns. These loops take most of a tick, so they run in the widest vectors of the
+//! computer.
 
 #![expect(clippy::inline_always, reason = "they must be inlined into the function that is compiled for wider vectors")]
 
 use super::factor::column_start;
 use crate::signal::{Lanes, NOTHING, Vector, Work, widest};
 
-/// Most columns.
 pub(super) const MOST: usize = 25;
-/// A pivot below this share of its column's square is rounding: that column is left out.
+/// A pivot below this fraction of its column's square is rounding: the column is left out.
 const ROUNDING: f64 = 1e-12;
-/// Columns that are factorised at once: their sums do not wait for each other.
+/// Columns that are factorised together, because their sums do not depend on each other.
 const BLOCK: usize = 4;
 
 /// `gram <- fade gram + weight row row^T`, `right <- fade right + weight row value`.
@@ -57,7 +57,7 @@ impl Work for Accumulate<'_> {
     }
 }
 
-/// `sum_j a_j b_j` over the shorter of the two.
+/// Returns `sum_j a_j b_j` over the shorter of the two.
 #[inline]
 pub(super) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
     widest(Dot { a, b })
@@ -78,7 +78,7 @@ impl Work for Dot<'_> {
     }
 }
 
-/// Cholesky factor of sums with a ridge, and the right-hand side that went through it.
+/// Cholesky factor of sums with a ridge, and the transformed right-hand side.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     elements: [Lanes; MOST * (MOST + 1) / 2],
@@ -92,14 +92,14 @@ impl Factor {
         Self { elements: [Lanes::ZERO; MOST * (MOST + 1) / 2], inverse: none, right: none }
     }
 
-    /// Factorises the sums of `right.len()` columns with `ridge` added to their diagonal. Sums that have faded to nothing are set to
-    /// zero.
+    /// Factorises the sums of `right.len()` columns with `ridge` added to their diagonal. Sums that have decayed to
+    /// almost zero are set to zero.
     pub(super) fn renew(&mut self, gram: &mut [Lanes], right: &mut [Lanes], ridge: &[Lanes]) {
         gram.iter_mut().chain(&mut *right).for_each(|sum| *sum = sum.settled());
         widest(Renew { factor: self, gram, right, ridge });
     }
 
-    /// The solution with the leading columns, as many as `found` has.
+    /// Solves for the leading columns, as many as `found` has.
     #[inline]
     pub(super) fn solve(&self, found: &mut [Lanes]) {
         widest(Solve { factor: self, found });
@@ -123,7 +123,7 @@ impl Work for Renew<'_> {
         let mut first = 0;
         while first < columns {
             let width = BLOCK.min(columns - first);
-            // Row by row the entries of these columns, and sums of products of each two of them.
+            // The entries of these columns, row by row, and the sums of products of each two of them.
             let mut rows = [[none; BLOCK]; MOST];
             let mut products = [[none; BLOCK]; BLOCK];
             let mut z = [none; BLOCK];
@@ -174,7 +174,7 @@ impl Work for Renew<'_> {
     }
 }
 
-/// Adds a row's products of each two of its columns from `from` on.
+/// Adds the products of each two of a row's columns, from `from` on.
 #[inline(always)]
 fn add_products<V: Vector>(products: &mut [[V; BLOCK]; BLOCK], row: &[V; BLOCK], from: usize) {
     for p in from..BLOCK {
@@ -184,7 +184,7 @@ fn add_products<V: Vector>(products: &mut [[V; BLOCK]; BLOCK], row: &[V; BLOCK],
     }
 }
 
-/// `1 / sqrt(pivot)`; 0 where the pivot is rounding.
+/// Returns `1 / sqrt(pivot)`; 0 if the pivot is rounding.
 #[inline(always)]
 fn inverse_root(pivot: Lanes, own: Lanes) -> Lanes {
     pivot.zip(own, |pivot, own| if pivot > NOTHING.max(ROUNDING * own) { 1.0 / pivot.sqrt() } else { 0.0 })
@@ -221,7 +221,7 @@ mod tests {
 
     use super::*;
 
-    /// Rows, forces and weights without a pattern, another one per lane.
+    /// Rows, forces and weights without a pattern, different in each lane.
     fn number(k: usize) -> Lanes {
         Lanes(std::array::from_fn(|lane| ((k * 37 + lane * 11 + 5) as f64 * 0.618_034).fract() * 2.0 - 1.0))
     }

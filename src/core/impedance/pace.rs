@@ -2,17 +2,17 @@
 
 use crate::signal::Lanes;
 
-/// Memory of the largest motion of late (s by this clock).
+/// Memory of the recent maximum motion (s by this clock). Chosen.
 const LARGEST_S: f64 = 20.0;
-/// Time runs at full pace from this share of the largest motion on, and at rest at this pace.
+/// Fraction of the maximum motion above which time runs at full pace, and the pace at rest.
 const FULL: f64 = 0.1;
 const REST: f64 = 0.02;
-/// The pace falls off with this time constant (s), so that a turning point does not stop the clock.
+/// The pace decays with this time constant (s), so that a turning point does not stop the clock.
 const HOLD_S: f64 = 0.05;
 /// Memory of the mean size of the motion (s by this clock), half of which is where dry friction saturates.
 const KNEE_S: f64 = 2.0;
 
-/// Tells how much each sample weighs: memories that fade by it forget nothing while the hand stands still.
+/// Clock that weighs each sample: memories based on it forget nothing while the hand stands still.
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
     rate_hz: f64,
@@ -29,7 +29,7 @@ impl Clock {
         Self { rate_hz, release, largest_m: Lanes::ZERO, mean_m: Lanes::ZERO, pace: 0.0, passed: 0.0 }
     }
 
-    /// Takes the motion of this tick (position above its 20 ms low-pass, m).
+    /// Adds the motion of this tick (position above its 20 ms low-pass, m).
     pub(super) fn step(&mut self, motion_m: Lanes) {
         let size_m = motion_m.map(f64::abs);
         let fade = 1.0 - self.pace / (LARGEST_S * self.rate_hz);
@@ -42,12 +42,12 @@ impl Clock {
         self.mean_m = (self.mean_m + (size_m - self.mean_m) * share).settled();
     }
 
-    /// The pace of the newest tick, above 0 up to 1, by the axis that moves most.
+    /// Returns the pace of the newest tick, above 0 up to 1, by the axis that moves most.
     pub(super) const fn pace(&self) -> f64 {
         self.pace
     }
 
-    /// Where dry friction saturates (m).
+    /// Returns the motion at which dry friction saturates (m).
     pub(super) fn knee_m(&self) -> Lanes {
         self.mean_m * 0.5
     }
@@ -57,13 +57,13 @@ impl Clock {
     }
 }
 
-/// The share of the newest value in a running mean over `memory` ticks of the clock, of which `passed` have passed.
+/// Returns the weight of the newest value in a running mean over `memory` ticks of the clock, after `passed` ticks.
 pub(super) fn share(pace: f64, passed: f64, memory: f64) -> f64 {
     (pace / passed.max(1.0).min(memory)).min(1.0)
 }
 
-/// The same, but until the memory is full the newest value has twice the share of a plain mean: for errors of what still learns,
-/// the first of which say little.
+/// Returns the same weight, but twice that of a plain mean until the memory is full; for errors of a method that still
+/// learns, whose first errors are not representative.
 pub(super) fn newest_share(pace: f64, passed: f64, memory: f64) -> f64 {
     share(2.0 * pace, passed, 2.0 * memory)
 }

@@ -1,7 +1,7 @@
-//! The model of a parcel as plain numbers in a row, as it goes over a network: one rendering's parameters at a time.
+//! The model of a packet as a row of plain numbers for a network: one rendering's parameters at a time.
 //!
-//! Numbers are 32 bits wide: a parameter that is right to 1 in 10 million changes no force that a hand can feel, and half the
-//! bytes leave room for what repairs losses. Columns that a model does not use are left out.
+//! The numbers are 32 bits wide: a parameter that is accurate to 1 in 10 million changes no force that a hand can feel,
+//! and half the bytes leave room for the repair of losses. Columns that a model does not use are omitted.
 
 use super::{
     AnchoredModel, BaselineModel, Contact, Form, LiteralModel, MODES, MatchedModel, Mode, ModeSet, Parcel, Wave,
@@ -9,36 +9,34 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Most numbers of one packed model: matched rendering with every column in use.
+/// Maximum number of numbers in one packed model: matched rendering with every column in use.
 pub const PACKED_MAX: usize = 3 * MATCHED_COLUMNS + 24;
 
-/// The parameters of one rendering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Packed {
-    /// Whose parameters: index into [`Mode::ALL`]; [`MODES`] for a baseline.
+    /// Mode of the parameters: index into [`Mode::ALL`]; [`MODES`] for a baseline.
     pub slot: u8,
-    /// How many of the numbers are in use.
+    /// Number of entries in use.
     pub len: u8,
     /// The parameters, SI units, in the order in which [`Packed::of`] writes them.
     pub numbers: [f32; PACKED_MAX],
 }
 
-/// The parameters of one rendering, taken apart into numbers and put together again.
+/// Conversion of a rendering's parameters to and from numbers.
 trait Numbers: Sized {
-    /// No parameters.
     const NONE: Self;
 
     fn write(&self, row: &mut Writer<'_>);
 
-    /// The parameters, or `None` if the numbers make no sense or are not finite.
+    /// Returns the parameters, or `None` if the numbers are invalid or not finite.
     fn read(row: &mut Reader<'_>) -> Option<Self>;
 }
 
-/// The parameters of one rendering in their place in a parcel.
+/// The parameters of one rendering within a packet.
 trait Parameters {
     fn write(&self, row: &mut Writer<'_>);
 
-    /// Takes new parameters; returns false, and changes nothing, if they make no sense or are not finite.
+    /// Replaces the parameters; returns false, and changes nothing, if the new ones are invalid or not finite.
     fn renew(&mut self, row: &mut Reader<'_>) -> bool;
 
     fn forget(&mut self);
@@ -59,8 +57,8 @@ impl<T: Numbers> Parameters for T {
 }
 
 impl Parcel {
-    /// The parameters of the rendering in this slot; `None` if it has none of its own. Every slot after the program's own modes is the
-    /// baseline's.
+    /// Returns the parameters of the rendering in this slot; `None` if that rendering has none. Every slot after the
+    /// program's own modes is the baseline's.
     fn parameters(&mut self, slot: usize) -> Option<&mut dyn Parameters> {
         let parameters: &mut dyn Parameters = match Mode::ALL.get(slot) {
             Some(Mode::Literal) => &mut self.literal,
@@ -76,43 +74,42 @@ impl Parcel {
 }
 
 impl Packed {
-    /// Nothing.
     pub const NONE: Self = Self { slot: MODES as u8, len: 0, numbers: [0.0; PACKED_MAX] };
 
-    /// The numbers in use.
     pub fn used(&self) -> &[f32] {
         self.numbers.get(..usize::from(self.len)).unwrap_or(&[])
     }
 
-    /// How many renderings of this set have parameters to send.
+    /// Returns how many renderings of this set have parameters to send.
     pub fn turns(modes: ModeSet) -> usize {
         Self::renderings(modes).count()
     }
 
-    /// The renderings that have parameters of their own, in the order in which they take turns.
+    /// Returns the renderings that have parameters, in the order in which they take turns.
     fn renderings(modes: ModeSet) -> impl Iterator<Item = Mode> {
         modes.modes().filter(|mode| !matches!(mode, Mode::Dfr | Mode::Best))
     }
 
-    /// The parameters of the rendering whose turn it is among those that the parcel has; `None` if it has none.
+    /// Packs the parameters of the rendering whose turn it is among those in the packet; returns `None` if there are
+    /// none.
     pub fn of(parcel: &Parcel, turn: usize) -> Option<Self> {
         let turn = turn.checked_rem(Self::turns(parcel.modes))?;
         let slot = Self::renderings(parcel.modes).nth(turn)?.index();
         let mut packed = Self { slot: slot as u8, ..Self::NONE };
-        // A copy: they are listed once, to be changed.
+        // A copy, because `parameters` returns mutable references.
         let mut parcel = *parcel;
         parcel.parameters(slot)?.write(&mut Writer { packed: &mut packed });
         Some(packed)
     }
 
-    /// Takes the parameters of this slot out of the parcel: they are too old to make a force of.
+    /// Removes the parameters of this slot from the packet: they are too old to compute a force.
     pub fn forget(slot: u8, parcel: &mut Parcel) {
         if let Some(parameters) = parcel.parameters(usize::from(slot)) {
             parameters.forget();
         }
     }
 
-    /// Puts the parameters into the parcel. Returns false, and changes nothing, if they make no sense or are not finite.
+    /// Writes the parameters into the packet. Returns false, and changes nothing, if they are invalid or not finite.
     pub fn put_into(&self, parcel: &mut Parcel) -> bool {
         let parameters = parcel.parameters(usize::from(self.slot));
         parameters.is_some_and(|parameters| parameters.renew(&mut Reader { rest: self.used() }))
@@ -156,7 +153,7 @@ impl Reader<'_> {
         first.is_finite().then(|| f64::from(*first))
     }
 
-    /// A whole number up to `most`.
+    /// Reads a whole number up to `most`.
     fn count(&mut self, most: usize) -> Option<usize> {
         let number = self.take()?;
         let count = number as usize;
@@ -312,7 +309,7 @@ mod tests {
     use super::*;
     use crate::impedance::{Baseline, Identifier, SLOTS, Sample, Settings};
 
-    /// Parcels of two seconds of pressing, every rendering computed.
+    /// Packets of two seconds of pressing, with every rendering computed.
     fn parcels(baseline: Baseline) -> Vec<Parcel> {
         let modes = ModeSet::ALL.with(Mode::Baseline(baseline));
         let mut identifier = Identifier::new(&Settings { modes, delay_s: 0.05, ..Settings::default() }).unwrap();
@@ -329,7 +326,7 @@ mod tests {
     }
 
     fn close(one: &Parcel, other: &Parcel) -> bool {
-        // Every parameter to 32 bits: the debug text of both, number by number, would hide nothing, but it is slow.
+        // Compares every parameter to 32 bits: comparing the debug texts would hide nothing either, but is slow.
         let near = |a: Lanes, b: Lanes| (a - b).norm() <= 1e-6 * (a.norm() + 1e-9);
         let rows = |a: &[Lanes], b: &[Lanes]| a.iter().zip(b).all(|(a, b)| near(*a, *b));
         rows(&one.matched.parameters, &other.matched.parameters)

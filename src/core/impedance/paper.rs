@@ -1,4 +1,4 @@
-//! The paper's model in the identifier: its window, its solutions, and what is sent and reported of them.
+//! The paper's model in the identifier: its window, its solutions, and the data that are sent and reported.
 
 use nalgebra::Vector3;
 
@@ -18,12 +18,12 @@ pub(super) struct Paper {
     mode: Mode,
     window: SlidingWindow<Gram>,
     solver: LiteralSolver,
-    /// Where the degree is chosen by what comes after the window.
+    /// Used if the degree is chosen by the data after the window.
     next: Option<Next>,
 }
 
 impl Paper {
-    /// For the mode literal, or linear alone, by the recipe of the settings.
+    /// Creates the model for the mode literal, or for linear alone, by the recipe of the settings.
     pub(super) fn new(mode: Mode, settings: &Settings) -> Self {
         let degree = if mode == Mode::Linear { 1 } else { settings.max_degree };
         let recipe = &settings.literal;
@@ -47,7 +47,7 @@ impl Method for Paper {
         modes.contains(self.mode) && (self.mode == Mode::Literal || !modes.contains(Mode::Literal))
     }
 
-    /// Either model is read from the window of the other.
+    /// Literal and linear read the same window: it restarts when either begins, and when literal ends.
     fn begins(&self, before: ModeSet, now: ModeSet) -> bool {
         let begins = |mode: Mode| now.contains(mode) && !before.contains(mode);
         let ends = before.contains(Mode::Literal) && !now.contains(Mode::Literal);

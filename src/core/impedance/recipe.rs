@@ -1,4 +1,4 @@
-//! How the paper is read where its text leaves a choice.
+//! Interpretation of the paper where its text leaves a choice.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,28 +10,28 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Time after a window in which [`Choice::Next`] judges its fits (s).
+/// Time after a window in which [`Choice::Next`] evaluates its fits (s).
 const JUDGED_S: f64 = 0.01;
 
-/// What the paper's `u` is, the "incremental positional changes of the instrument within a time interval".
+/// Meaning of the paper's `u`, the "incremental positional changes of the instrument within a time interval".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reading {
-    /// What position, velocity and acceleration have changed over the window: zero one window after the hand has stopped.
+    /// The changes of position, velocity and acceleration over the window: zero one window after the hand has stopped.
     #[default]
     Increments,
     /// The displacement from the workspace's origin, and its derivatives.
     Displacement,
 }
 
-/// By what error the degree is chosen.
+/// Error by which the degree is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Choice {
-    /// In the window that the degrees were fitted to.
+    /// The error in the window to which the degrees were fitted.
     #[default]
     Window,
-    /// Over the 10 ms after that window.
+    /// The error over the 10 ms after that window.
     Next,
 }
 
@@ -39,9 +39,7 @@ pub enum Choice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Recipe {
-    /// What is regressed on.
     pub reading: Reading,
-    /// How the literal mode chooses its degree.
     pub choice: Choice,
     /// Whether a free constant force is part of the fit.
     pub constant: bool,
@@ -50,7 +48,8 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// What the ridge adds to the diagonal of the normal equations, per row of the window, for each motion column in SI units.
+    /// Returns the values that the ridge adds to the diagonal of the normal equations, per row of the window, for each
+    /// motion column in SI units.
     pub(super) fn penalty(&self, scales: &Scales) -> [f64; MOTION_COLUMNS] {
         let Scales { position_m, velocity_m_s, acceleration_m_s2, .. } = *scales;
         let squares = [position_m, velocity_m_s, acceleration_m_s2].map(|scale| scale * scale);
@@ -64,8 +63,8 @@ impl Recipe {
     }
 }
 
-/// The degree that foretold best what came after its window: all degrees of a window are judged for 10 ms, then those of the
-/// window that ends there.
+/// Chooses the degree that best predicted the data after its window: all degrees of a window are evaluated for 10 ms,
+/// then those of the window that ends there.
 #[derive(Clone, Debug)]
 pub(super) struct Next {
     ticks: usize,
@@ -88,8 +87,8 @@ impl Next {
         }
     }
 
-    /// Takes the newest row (force in N), `None` where nothing was measured, and the fits of the window that ends with it. Returns the degree
-    /// for now, 0 as long as none is known.
+    /// Adds the newest row (force in N), `None` if nothing was measured, and the fits of the window that ends with it.
+    /// Returns the current degree, 0 before one is known.
     pub(super) fn step(&mut self, row: Option<(&Features, Lanes)>, newest: &LiteralSolver) -> usize {
         self.waited += 1;
         if let Some((features, force_n)) = row {
@@ -110,7 +109,7 @@ impl Next {
             self.waited = 0;
             self.judged = 0;
         }
-        // Where that degree cannot be solved now, the next lower one that can.
+        // If that degree cannot be solved now, use the next lower one that can.
         (1..=self.degree).rev().find(|&degree| newest.is_solved(degree)).unwrap_or(0)
     }
 

@@ -1,11 +1,12 @@
-//! The literal mode's recipe: the default to the bit, what each key changes, and that nothing is judged before it has come.
+//! The literal mode's recipe: the default to the bit, the effect of each key, and that no data are used before they
+//! arrive.
 
 use nalgebra::Vector3;
 
 use super::{tests::sample, *};
 
 const PRINTED: Recipe = Recipe { reading: Reading::Increments, choice: Choice::Window, constant: false, ridge: 0.0 };
-/// The default, every key alone, and all together.
+/// The default, every key alone, and all keys together.
 const RECIPES: [Recipe; 6] = [
     PRINTED,
     Recipe { reading: Reading::Displacement, ..PRINTED },
@@ -20,13 +21,13 @@ fn settings(literal: Recipe) -> Settings {
     Settings { window_s: 0.1, delay_s: 0.03, modes, literal, ..Settings::default() }
 }
 
-/// A number from 0 to 1, the same every time.
+/// Returns a number from 0 to 1, identical in every run.
 fn uneven(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Presses and rests, without sines, whose last bits differ from computer to computer.
+/// Presses and rests, without sines, whose last bits differ between computers.
 fn pressed(k: u32, state: &mut u64) -> Sample {
     let share = f64::from(k % 700).min(400.0) / 400.0;
     let depth_m = 0.01 * 4.0 * share * (1.0 - 0.5 * share);
@@ -56,7 +57,7 @@ fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
         mix(f64::from(report.paper_degree));
         mix(report.literal_failures as f64);
     }
-    // Made before the keys were added.
+    // Computed before the keys were added.
     assert_eq!(bits, 0x3a84_451f_1665_593e, "{bits:#x}");
 }
 
@@ -94,7 +95,7 @@ fn forces_that_have_not_come_yet_choose_nothing() {
         for k in 0..1200 {
             let sample = sample(k, 1000.0);
             plain.step(&sample);
-            // Another force from tick 800 on, in the midst of ten that are judged together.
+            // A different force from tick 800 on, in the middle of ten ticks that are evaluated together.
             let force_n = if k < 805 { sample.force_n } else { Vector3::new(3.0, -2.0, 1.0) };
             other.step(&Sample { force_n, ..sample });
             assert!(k >= 805 || plain.parcel() == other.parcel(), "tick {k}: {recipe:?}");

@@ -1,23 +1,23 @@
-//! What a change of force over the delay is explained by.
+//! The quantities that explain a change of force over the delay.
 
 use super::settings::Settings;
 use crate::signal::{BANK, LANES, Lanes, LowPassBank};
 
-/// Shortest and longest time constants of the filter bank (s).
+/// Shortest and longest time constants of the filter bank (s). Chosen as in `anchored.rs`.
 const BANK_S: [f64; 2] = [0.005, 0.32];
 /// Memory of the slow means: the motion's centre, the force's level, the size of the speed (s).
 const SLOW_S: f64 = 2.0;
-/// What only the follower knows is bounded by this many of its own running RMS: a jump never seen is not extrapolated.
+/// Quantities that only the follower has are limited to this many times their own running RMS: an unprecedented jump is
+/// not extrapolated.
 const USUAL: f64 = 6.0;
 
-/// Regressors per axis.
 pub(super) const REGRESSORS: usize = 22;
-/// The shorter model: the first regressors, linear in the motion.
+/// Length of the shorter model: the first regressors, linear in the motion.
 pub(super) const LINEAR_REGRESSORS: usize = 12;
 
 /// Index of the first regressor of each group.
 pub(super) mod at {
-    /// Change of position; then of its four differences from the low-passes.
+    /// Change of position, followed by the changes of its four differences from the low-passes.
     pub(in super::super) const MOTION: usize = 0;
     /// The force above its low-passes at the anchor.
     pub(in super::super) const FORCE_TREND: usize = 5;
@@ -31,39 +31,36 @@ pub(super) mod at {
     pub(in super::super) const CURVATURE: usize = 12;
     /// Position above its centre at the anchor.
     pub(in super::super) const POSITION_LEVEL: usize = 15;
-    /// Force above its level at the anchor; a steady drift comes next.
+    /// Force above its level at the anchor, followed by a steady drift.
     pub(in super::super) const FORCE_LEVEL: usize = 16;
     /// The motion's differences from the low-passes at the anchor.
     pub(in super::super) const MOTION_TREND: usize = 18;
 }
 
-/// Regressors of one instant, one lane per axis.
 pub(super) type Regressors = [Lanes; REGRESSORS];
 
-/// Position and its differences from the low-pass bank; at the follower from its tip, at the leader from its own motion.
+/// Position and its differences from the low-pass bank; the follower uses its tip, the leader its own motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Stance {
     pub(super) x: Lanes,
     pub(super) u: [Lanes; BANK],
     /// The first difference's own difference from its low-pass: acceleration.
     pub(super) surge: Lanes,
-    /// Where dry friction saturates, and how fast time runs, by this end's [`Clock`](super::pace::Clock).
+    /// Motion at which dry friction saturates, and the pace of time, by this end's [`Clock`](super::pace::Clock).
     pub(super) knee: Lanes,
     pub(super) pace: f64,
 }
 
 impl Stance {
-    /// At the origin, at rest.
     pub(super) const BLANK: Self =
         Self { x: Lanes::ZERO, u: [Lanes::ZERO; BANK], surge: Lanes::ZERO, knee: Lanes::ZERO, pace: 0.0 };
 }
 
-/// What the follower knows at the anchor besides the motion.
+/// The follower's data at the anchor, apart from the motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Background {
     pub(super) force_n: Lanes,
     force_trend: [Lanes; BANK],
-    /// Slow mean of the position.
     pub(super) centre: Lanes,
     /// Half of the mean size of the second difference: where friction saturates.
     pub(super) knee: Lanes,
@@ -72,25 +69,25 @@ pub(super) struct Background {
     motion_trend: [Lanes; BANK],
 }
 
-/// The bank for positions, the same at both ends of the link.
+/// Creates the filter bank for positions, identical at both ends of the link.
 pub(super) fn position_bank(settings: &Settings) -> LowPassBank {
     LowPassBank::new(BANK_S[0], BANK_S[1], settings.rate_hz)
 }
 
-/// What a low-pass of the bank's shortest time constant takes up of a change in one sample.
+/// Returns the fraction of a change that the low-pass with the bank's shortest time constant follows in one sample.
 pub(super) fn shortest_share(settings: &Settings) -> f64 {
     -libm::expm1(-1.0 / (BANK_S[0] * settings.rate_hz).max(1.0))
 }
 
-/// `u / (|u| + knee)`: the sign of the motion, smoothed.
+/// Returns `u / (|u| + knee)`: the sign of the motion, smoothed.
 #[inline]
 pub(super) fn saturated(u: Lanes, knee: Lanes) -> Lanes {
     let size = u.map(f64::abs) + knee;
     u * size.recip_or_zero()
 }
 
-/// Changes from `then` to `now` that only the motion decides, in the order [position, four differences, friction, square,
-/// cube, product].
+/// Returns the changes from `then` to `now` that depend only on the motion, in the order
+/// [position, four differences, friction, square, cube, product].
 #[inline]
 pub(super) fn motion_changes(now: &Stance, then: &Stance, centre: Lanes, knee: Lanes) -> [Lanes; 9] {
     let a = now.x - centre;
@@ -110,7 +107,7 @@ pub(super) fn motion_changes(now: &Stance, then: &Stance, centre: Lanes, knee: L
 }
 
 impl Background {
-    /// The regressors for the motion `now`, anchored at `then` with this background.
+    /// Returns the regressors for the motion `now`, anchored at `then` with this background.
     pub(super) fn regressors(&self, now: &Stance, then: &Stance) -> Regressors {
         let [dx, u0, u1, u2, u3, friction, square, cube, product] = motion_changes(now, then, self.centre, self.knee);
         let [g0, g1, g2, g3] = self.force_trend;
@@ -127,7 +124,7 @@ impl Background {
     }
 }
 
-/// Makes [`Background`]s from the follower's motion and force.
+/// Computes [`Background`]s from the follower's motion and force.
 #[derive(Clone, Debug)]
 pub(super) struct Surroundings {
     force_bank: LowPassBank,
@@ -150,7 +147,8 @@ impl Surroundings {
         }
     }
 
-    /// The background of this tick. `usual`: mean squares of the regressors so far, `None` while too little was seen.
+    /// Returns the background of this tick. `usual`: mean squares of the regressors so far, `None` while there are too
+    /// few samples.
     pub(super) fn step(&mut self, stance: &Stance, force_n: Lanes, usual: Option<&Regressors>) -> Background {
         if !self.started {
             self.centre = stance.x;

@@ -1,4 +1,4 @@
-//! The leader's end: a force from the newest parcel and the leader's own motion.
+//! The leader's end: computes a force from the newest packet and the leader's own motion.
 
 use nalgebra::Vector3;
 
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes};
 
-/// Renders a force from what came over the link and the leader's motion. Nothing is allocated after construction.
+/// Renders a force from the received packets and the leader's motion. Nothing is allocated after construction.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -22,10 +22,10 @@ use crate::signal::{DelayLine, Lanes};
 ///
 /// let mut renderer = Renderer::new(&Settings::default())?;
 /// let here = Vector3::zeros();
-/// assert_eq!(renderer.step(&here, None).force(Mode::Dfr), None, "no parcel, no force");
+/// assert_eq!(renderer.step(&here, None).force(Mode::Dfr), None, "no packet, no force");
 ///
 /// let parcel = Parcel { t_s: 0.0, force_n: Vector3::new(0.0, 0.0, 1.5), fresh: true, ..Parcel::BLANK };
-/// assert_eq!(renderer.step(&here, Some(&parcel)).force(Mode::Dfr), Some(parcel.force_n), "dfr reflects the force as it came");
+/// assert_eq!(renderer.step(&here, Some(&parcel)).force(Mode::Dfr), Some(parcel.force_n), "dfr reflects the received force");
 /// # Ok::<(), nima_core::impedance::SettingsError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -37,18 +37,17 @@ pub struct Renderer {
     slip: Slip,
     baseline: Option<Leader>,
     best: Option<Best>,
-    /// What is rendered from the handle's own motion must not drive the hand.
+    /// Damping for forces that are rendered from the handle's own motion, which must not drive the hand.
     dampers: Option<[(Mode, Damper); 2]>,
     parcel_t_s: f64,
-    /// Ticks since the newest parcel came.
     waiting: usize,
 }
 
 impl Renderer {
-    /// Allocates everything, rings for [`MAX_DELAY_S`] included.
+    /// Allocates all memory, including the ring buffers for [`MAX_DELAY_S`].
     ///
     /// # Errors
-    /// A setting outside of its range, by its name.
+    /// The name of the first setting that is out of its range.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
@@ -67,12 +66,12 @@ impl Renderer {
         })
     }
 
-    /// Takes one tick.
+    /// Renders one tick.
     ///
-    /// `position_m`: the leader's motion mapped into the workspace frame (m); one that is not finite is bridged like a lost
-    /// sample. `parcel`: the newest that came over the link, one delay old when it comes. When no newer one comes (`None`,
-    /// or the same again, or an older one) the last is taken to have aged by the ticks since, and the correction goes on
-    /// from the same anchor.
+    /// `position_m`: the leader's motion mapped into the workspace frame (m); a non-finite one is bridged like a lost
+    /// sample. `parcel`: the newest packet from the link, one delay old on arrival. Without a newer packet (`None`, or
+    /// the same or an older one again) the age of the last packet increases with each tick, and the correction
+    /// continues from the same anchor.
     pub fn step(&mut self, position_m: &Vector3<f64>, parcel: Option<&Parcel>) -> Rendered {
         let position = usable_position(active(position_m, self.settings.axes), &self.settings.scales);
         let now = self.track.step(position);
@@ -92,7 +91,7 @@ impl Renderer {
         } else {
             self.waiting = self.waiting.saturating_add(1);
         }
-        // Not that much motion yet: the anchor is now, i.e. no correction.
+        // Without that much motion yet, the anchor is now, i.e. there is no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
         let baseline = self.baseline.as_mut();
@@ -116,12 +115,11 @@ impl Renderer {
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`].
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
-        // A longer link delivers parcels with earlier time stamps than the last one that came: they are still new.
+        // A longer link delivers packets with earlier time stamps than the last one: they are still new.
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }
 
-    /// Forgets all motion.
     pub fn reset(&mut self) {
         self.track.reset();
         self.postures.clear();

@@ -1,4 +1,4 @@
-//! What is not needed is not computed: modes that nobody chose, and learning where there is no contact.
+//! Unneeded computations are skipped: modes that are not chosen, and learning without contact.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ fn settings() -> Settings {
     Settings { window_s: 0.1, delay_s: 0.03, rest_n: REST_N, ..Settings::default() }
 }
 
-/// Pressing into a spring of 200 N/m twice a second until 1.5 s and from 4.5 s on; between them the tip moves above it.
+/// Presses into a spring of 200 N/m twice per second until 1.5 s and from 4.5 s on; in between the tip moves above it.
 fn touched(k: usize) -> Sample {
     let t_s = k as f64 * 1e-3;
     let away_m = 0.03 * (1.0 - (TAU * (t_s - 1.5) / 3.0).cos()) * f64::from((1500..4500).contains(&k));
@@ -41,7 +41,7 @@ fn without_contact_nothing_is_learnt_and_learning_goes_on_with_the_next_contact(
             }
         }
         assert!(touches > 500);
-        // Far from the tissue; a force that is still foretold there is learnt away first.
+        // Far from the tissue; a force that is still predicted there is unlearned first.
         assert!(learnt[1] < learnt[0] + 200, "{mode}: {learnt:?} samples");
         assert!(learnt[2] > learnt[1] + 500, "{mode}: it learns again");
     }
@@ -83,7 +83,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
     assert_eq!((report.paper_degree, report.degree, report.nima_degree, report.rank), (0, 0, 0, 0));
     assert_eq!(identifier.parcel(), alone.parcel(), "what is left out leaves no trace");
 
-    // A mode that comes in begins anew, beside the one that goes on.
+    // An added mode restarts learning, while the other one continues.
     identifier.compute(ModeSet::only(Mode::Matched).with(Mode::Anchored).with(Mode::Literal));
     for k in 500..1500 {
         identifier.step(&sample(k, 1000.0));
@@ -91,7 +91,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
     }
     assert_eq!(identifier.parcel().matched, alone.parcel().matched);
     assert!(identifier.report().degree > 0 && identifier.report().paper_degree > 0);
-    assert!(identifier.report().rank > 0, "the window's degrees are there to be compared");
+    assert!(identifier.report().rank > 0, "the window's degrees are available for comparison");
     assert!(identifier.report().prediction(Mode::Linear).is_none());
 
     identifier.compute(ModeSet::only(Mode::Linear));

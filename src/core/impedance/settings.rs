@@ -1,4 +1,4 @@
-//! What the identifier and the renderer are told at construction.
+//! Settings of the identifier and the renderer.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,10 +8,10 @@ use crate::{
     signal::DifferentiatorKind,
 };
 
-/// Longest programmed delay of the link (s); the rings are made for it.
+/// Maximum programmed delay of the link (s), for which the ring buffers have room.
 pub const MAX_DELAY_S: f64 = DELAY_S.max;
 
-/// The modes to compute; what is not asked for costs nothing.
+/// The modes to compute; the others cost nothing.
 ///
 /// ```
 /// use nima_core::impedance::{Mode, ModeSet};
@@ -26,15 +26,15 @@ pub struct ModeSet {
 }
 
 impl ModeSet {
-    /// Every mode of the program's own; a baseline is computed only where it is asked for.
+    /// Every built-in mode; a baseline is computed only if requested.
     pub const ALL: Self = Self { own: [true; MODES], baseline: None };
 
-    /// One mode (delayed reflection comes with every one, for comparison).
+    /// Returns one mode, with delayed reflection for comparison.
     pub const fn only(mode: Mode) -> Self {
         Self { own: [false; MODES], baseline: None }.with(Mode::Dfr).with(mode)
     }
 
-    /// This set and one more mode, with those that it is made of; a baseline takes the place of the one before.
+    /// Returns this set with one more mode and the modes on which it is based; a baseline replaces the previous one.
     #[must_use]
     pub const fn with(mut self, mode: Mode) -> Self {
         if let Mode::Baseline(baseline) = mode {
@@ -49,7 +49,6 @@ impl ModeSet {
         self
     }
 
-    /// Whether `mode` is computed.
     pub fn contains(self, mode: Mode) -> bool {
         match mode {
             Mode::Baseline(baseline) => self.baseline == Some(baseline),
@@ -57,18 +56,15 @@ impl ModeSet {
         }
     }
 
-    /// The baseline that is computed.
     pub const fn baseline(self) -> Option<Baseline> {
         self.baseline
     }
 
-    /// The modes that are computed.
     pub fn modes(self) -> impl Iterator<Item = Mode> {
         let own = Mode::ALL.into_iter().filter(move |mode| self.contains(*mode));
         own.chain(self.baseline.map(Mode::Baseline))
     }
 
-    /// The modes that are in both sets.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -84,20 +80,20 @@ impl Default for ModeSet {
     }
 }
 
-/// The motion from which the leader makes the force.
+/// The motion from which the leader computes the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OwnMotion {
-    /// Where the follower is now, as its commands and its lag tell: accurate.
+    /// The follower's current position, estimated from its commands and its lag: accurate.
     #[default]
     Follower,
-    /// Where the handle is: the force is that of the place which the follower will reach. Matched rendering then
-    /// gives the hand no power in the mean: what its changing parameters give is damped.
+    /// The handle's position: the force belongs to the place that the follower will reach. Matched rendering then gives
+    /// the hand no power on average: the energy from its changing parameters is damped.
     Handle,
 }
 
-/// Settings of an [`Identifier`](super::Identifier) and of the [`Renderer`](super::Renderer) at the other end of the link;
-/// both must be given the same.
+/// Settings of an [`Identifier`](super::Identifier) and of the [`Renderer`](super::Renderer) at the other end of the
+/// link; both ends must use the same settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -111,24 +107,22 @@ pub struct Settings {
     pub max_degree: usize,
     /// Axes in use, 1 to 3 (x; x, y; x, y, z).
     pub axes: usize,
-    /// Physical scales of the columns.
     pub scales: Scales,
-    /// The modes to compute; [`Identifier::compute`](super::Identifier::compute) can leave some of them out for a while.
+    /// The modes to compute; [`Identifier::compute`](super::Identifier::compute) can switch some of them off for a
+    /// while.
     pub modes: ModeSet,
-    /// The identification rests while the force measured and the forces rendered lie within this (N): there is no contact,
-    /// and nothing to learn. 0: it never rests.
+    /// The identification rests while the measured force and the rendered forces are within this (N), because there is
+    /// no contact and nothing to learn. 0: it never rests.
     pub rest_n: f64,
     /// Whether the force on each axis may depend on the motion of the others (the full `M`) in matched rendering, and so in the best
     /// of both.
     pub cross_talk: bool,
-    /// The motion that the leader is given.
     pub own_motion: OwnMotion,
-    /// How velocity and acceleration are made.
     pub differentiator: DifferentiatorKind,
-    /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as if each row had
-    /// been seen once more with this mean square and no force. 0 switches it off.
+    /// Ridge of the anchored fit, per row of the window and in scaled columns: a coefficient costs as much as one more
+    /// row with this mean square and no force. 0 switches it off.
     pub ridge: f64,
-    /// How literal and linear read the paper.
+    /// Interpretation of the paper in the modes literal and linear.
     pub literal: Recipe,
 }
 
@@ -156,7 +150,7 @@ impl Settings {
     /// Checks every range.
     ///
     /// # Errors
-    /// The first setting that is outside of its range.
+    /// The first setting that is out of its range.
     ///
     /// ```
     /// use nima_core::impedance::{Settings, SettingsError};
@@ -205,47 +199,42 @@ impl Settings {
         Ok(())
     }
 
-    /// Rows in half a window (a window is made of two blocks, so its length is even).
+    /// Returns the rows in half a window (a window consists of two blocks, so its length is even).
     pub(super) fn block(&self) -> usize {
         ((self.window_s * self.rate_hz / 2.0).round() as usize).max(5)
     }
 
-    /// The programmed delay in samples, at most [`MAX_DELAY_S`].
+    /// Returns the programmed delay in samples, at most [`MAX_DELAY_S`].
     pub fn delay_ticks(&self, delay_s: f64) -> usize {
         let delay_s = if delay_s.is_finite() { delay_s.clamp(DELAY_S.min, DELAY_S.max) } else { 0.0 };
         (delay_s * self.rate_hz).round() as usize
     }
 }
 
-/// A setting out of range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
-    /// Sampling rate out of range.
-    #[error("the sampling rate is {rate_hz} Hz; give {RATE_HZ}")]
+    #[error("the sampling rate of {rate_hz} Hz is out of range: use {RATE_HZ}")]
     Rate { rate_hz: f64 },
-    /// Window too short or too long.
-    #[error("a window of {window_s} s holds {samples} samples; give {WINDOW_SAMPLES}")]
+    #[error("the window of {window_s} s contains {samples} samples: use {WINDOW_SAMPLES}")]
     Window {
         window_s: f64,
-        /// Samples at the given rate.
+        /// Number of samples at the given rate.
         samples: f64,
     },
-    #[error("the delay is {delay_s} s; give {DELAY_S}")]
+    #[error("the delay of {delay_s} s is out of range: use {DELAY_S}")]
     Delay { delay_s: f64 },
-    #[error("the highest degree is {degree}; give 1 to {MAX_DEGREE}")]
+    #[error("the highest degree {degree} is out of range: use 1 to {MAX_DEGREE}")]
     Degree { degree: usize },
-    /// Number of axes out of range.
-    #[error("{axes} axes were asked for; it must be 1, 2 or 3")]
+    #[error("{axes} axes are not possible: use 1, 2 or 3")]
     Axes { axes: usize },
-    /// A scale is not a positive ordinary number.
-    #[error("the scale {name} is {value}; it must lie between 1e-9 and 1e9")]
+    #[error("the scale {name} = {value} is out of range: use 1e-9 to 1e9")]
     Scale {
         /// Field of [`Scales`].
         name: &'static str,
         value: f64,
     },
-    #[error("the force at which the identification rests is {rest_n} N; give {REST_N}")]
+    #[error("the resting force of {rest_n} N is out of range: use {REST_N}")]
     Rest { rest_n: f64 },
-    #[error("the ridge is {ridge}; give {RIDGE}")]
+    #[error("the ridge {ridge} is out of range: use {RIDGE}")]
     Ridge { ridge: f64 },
 }

@@ -3,16 +3,17 @@
 use super::factor::{Factor, MAX_COLUMNS, column_start};
 use crate::signal::Lanes;
 
-/// Rows of the inverse made side by side.
+/// Number of rows of the inverse computed together: four independent chains of additions, so that the processor does
+/// not wait for each result.
 const BLOCK: usize = 4;
 pub(super) const PRODUCTS: usize = MAX_COLUMNS * (MAX_COLUMNS + 1) / 2;
 
 /// The solutions of `min |A_p M - b|` for every prefix `A_p` of the columns at once, one problem per lane.
 ///
-/// With `R = [R_A z; 0 rho]` and `W = R_A^-1`, the solution with the first `p` columns is `W_p z_p` (leading blocks: the
-/// inverse of a triangle's leading block is the leading block of its inverse). So the products `W_ij z_j` hold them all:
-/// prefix `p` is the sum of their first `p` columns. Its sum of squared residuals is `sum_{j >= p} z_j^2 + rho^2`.
-/// A column that carries nothing (zero on the diagonal) gets the coefficient 0.
+/// With `R = [R_A z; 0 rho]` and `W = R_A^-1`, the solution with the first `p` columns is `W_p z_p` (leading blocks:
+/// the inverse of a triangle's leading block is the leading block of its inverse). The products `W_ij z_j` therefore
+/// contain all of them: prefix `p` is the sum of their first `p` columns. Its sum of squared residuals is
+/// `sum_{j >= p} z_j^2 + rho^2`. A column without information (zero on the diagonal) gets the coefficient 0.
 #[derive(Clone, Debug)]
 pub struct Solution {
     columns: usize,
@@ -27,7 +28,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Room for the solutions of `columns <= 16` unknowns, all zero.
+    /// Allocates the solutions of `columns <= 16` unknowns, all zero.
     pub fn new(columns: usize) -> Self {
         Self {
             columns: columns.min(MAX_COLUMNS),
@@ -38,7 +39,6 @@ impl Solution {
         }
     }
 
-    /// Number of unknowns.
     pub fn columns(&self) -> usize {
         self.columns
     }
@@ -77,19 +77,19 @@ impl Solution {
         }
     }
 
-    /// What column `j` adds to the coefficients `0..=j` when it joins the columns before it.
+    /// Returns the change of the coefficients `0..=j` when column `j` joins the columns before it.
     #[inline]
     pub(super) fn increment(&self, j: usize) -> &[Lanes] {
         &self.products[column_start(j)..=column_start(j) + j]
     }
 
-    /// All increments, packed by columns.
+    /// Returns all increments, packed by columns.
     #[inline]
     pub(super) fn increments(&self) -> &[Lanes; PRODUCTS] {
         &self.products
     }
 
-    /// Coefficients with the first `prefix` columns; those beyond are zero. Index 0 is the constant's.
+    /// Returns the coefficients with the first `prefix` columns, zero beyond. Index 0 is the constant.
     pub fn coefficients(&self, prefix: usize) -> [Lanes; MAX_COLUMNS] {
         let mut sum = [Lanes::ZERO; MAX_COLUMNS];
         for j in 0..prefix.min(self.columns) {
@@ -100,18 +100,19 @@ impl Solution {
         sum
     }
 
-    /// Sum of squared residuals (and of the ridge's penalty) with the first `prefix` columns (N²).
+    /// Returns the sum of squared residuals (and of the ridge's penalty) with the first `prefix` columns (N²).
     pub fn residual_squares(&self, prefix: usize) -> Lanes {
         self.squares[prefix.min(self.columns)]
     }
 
-    /// Condition number (Frobenius: at most `prefix` times the spectral one) of the first `prefix` scaled columns.
+    /// Returns the condition number (Frobenius: at most `prefix` times the spectral one) of the first `prefix` scaled
+    /// columns.
     pub fn condition(&self, prefix: usize) -> Lanes {
         self.condition[prefix.min(self.columns)]
     }
 }
 
-/// `sum_k W_ik r_k` over `first <= k < j` for the rows `first..first + BLOCK`.
+/// Returns `sum_k W_ik r_k` over `first <= k < j` for the rows `first..first + BLOCK`.
 #[inline]
 fn row_products(w: &[[Lanes; MAX_COLUMNS]; MAX_COLUMNS], r: &[Lanes], first: usize, j: usize) -> [Lanes; BLOCK] {
     let mut sums = [Lanes::ZERO; BLOCK];

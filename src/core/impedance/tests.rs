@@ -1,4 +1,4 @@
-//! The two ends together: extremes, symmetry, delay, and real recordings.
+//! Both ends together: extremes, symmetry, delay, and real recordings.
 
 #![expect(clippy::float_cmp, reason = "where the same operations are done, the same bits come out")]
 
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::*;
 
-/// A palpation-like motion with contact, three axes, deterministic.
+/// A palpation-like motion with contact, in three axes, deterministic.
 pub(super) fn sample(k: usize, rate_hz: f64) -> Sample {
     let t = k as f64 / rate_hz;
     let x = Vector3::new(
@@ -108,7 +108,8 @@ fn the_leader_renders_what_the_follower_predicted() {
     }
 }
 
-/// A leader whose own motion runs ahead of the follower's by 20 ms: matched rendering errs by what that changes.
+/// A leader whose own motion is 20 ms ahead of the follower's: the error of matched rendering is the resulting change
+/// of force.
 #[test]
 fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
     let settings = Settings { delay_s: 0.01, ..settings() };
@@ -123,7 +124,7 @@ fn the_best_of_two_is_judged_by_what_the_leader_rendered() {
         identifier.step(&truth);
         link.push(*identifier.parcel());
         let rendered = renderer.step(&sample(k + 20, 1000.0).position_m, k.checked_sub(10).map(|k| &link[k]));
-        // The softmin remembers a second of motion, the first moments included.
+        // The softmin's memory is one second of motion, including the first moments.
         if k >= 6000 {
             for (i, mode) in modes.into_iter().enumerate() {
                 here_n[i] += (identifier.report().prediction(mode).unwrap() - truth.force_n).norm();
@@ -157,7 +158,7 @@ fn permuting_axes_permutes_results() {
                 assert_eq!([a[1], a[2], a[0]], [b[0], b[1], b[2]]);
             }
         }
-        // Norms over the axes are summed in another order: a rounding error may differ.
+        // Norms over the axes are summed in a different order: they may differ by a rounding error.
         for (a, b) in plain.report().prediction_n.iter().zip(&turned.report().prediction_n) {
             assert!((turn(*a) - b).norm() <= 1e-9 * (1.0 + a.norm()), "tick {k}: {a} {b}");
         }
@@ -295,7 +296,7 @@ fn nothing_that_comes_in_makes_a_number_that_is_not_finite() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    // Stretches of ordinary motion, of constant values, and of numbers of every size.
+    // Segments of ordinary motion, of constant values, and of numbers of every size.
     let mut still = sample(0, 1000.0);
     for k in 0..30_000 {
         let mut s = sample(k, 1000.0);

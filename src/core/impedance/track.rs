@@ -10,13 +10,15 @@ use super::{
 };
 use crate::signal::{DelayLine, Differentiator, Lanes, LowPassBank, Motion};
 
-/// Longest stretch (s) over which a missing position is extrapolated at the last speed; after it the position is held.
+/// Maximum time (s) over which a missing position is extrapolated at the last speed; after it the position is held.
+/// Chosen.
 const BRIDGE_S: f64 = 0.01;
 
-/// Beyond this many scales a position or a force is absurd (1 km, 40 kN with the default scales): kept away from the powers.
+/// A position or a force of more than this many scales is absurd (1 km, 40 kN with the default scales) and is not
+/// raised to powers.
 const ABSURD: f64 = 1e4;
 
-/// Makes [`Motion`] from positions and remembers it over one window.
+/// Computes [`Motion`] from positions and stores it over one window.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     differentiator: Differentiator,
@@ -55,8 +57,8 @@ impl Track {
         }
     }
 
-    /// Takes this tick's position; `None` where it is missing: then the last one goes on at its speed for 10 ms at most, and
-    /// stays put after that. Before the first good position the motion is zero.
+    /// Adds this tick's position; `None` if it is missing: the last position then continues at its speed for at most 10
+    /// ms and is held after that. Before the first good position the motion is zero.
     pub(super) fn step(&mut self, position: Option<Lanes>) -> Posture {
         let position = if let Some(position) = position {
             self.missing = 0;
@@ -86,8 +88,8 @@ impl Track {
         self.posture
     }
 
-    /// The paper's features `X` (SI units) of `u`: what position, velocity and acceleration have changed over the window (over the time since the
-    /// first sample, while that is less), or what they are.
+    /// Returns the paper's features `X` (SI units) of `u`: the changes of position, velocity and acceleration over the
+    /// window (over the time since the first sample, while that is shorter), or their values.
     pub(super) fn paper_x(&self) -> Features {
         if self.reading == Reading::Displacement {
             return features(&self.last, self.degree);
@@ -98,7 +100,7 @@ impl Track {
         features(&u, self.degree)
     }
 
-    /// Whether the derivatives are those of a full filter.
+    /// Returns whether the derivatives come from a full filter.
     pub(super) fn settled(&self) -> bool {
         self.differentiator.settled()
     }
@@ -115,13 +117,13 @@ impl Track {
     }
 }
 
-/// A position that can be used: finite and not absurd.
+/// Returns the position if it is usable: finite and not absurd.
 pub(super) fn usable_position(position: Lanes, scales: &Scales) -> Option<Lanes> {
     let limit = ABSURD * scales.position_m;
     position.0.iter().all(|x| x.abs() <= limit).then_some(position)
 }
 
-/// A force that can be used: finite and not absurd.
+/// Returns the force if it is usable: finite and not absurd.
 pub(super) fn usable_force(force: Lanes, scales: &Scales) -> Option<Lanes> {
     let limit = ABSURD * scales.force_n;
     force.0.iter().all(|f| f.abs() <= limit).then_some(force)

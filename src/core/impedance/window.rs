@@ -1,47 +1,45 @@
-//! A sliding window over anything that can be summed up row by row and merged.
+//! A sliding window over any data that can be summed row by row and merged.
 
-/// What a window knows about its rows: a sum, or a triangular factor.
+/// Summary of the rows of a window: a sum, or a triangular factor.
 ///
-/// Taking rows in one by one and merging two summaries must agree: the summary of a stretch is that of its parts merged, in
-/// any order, up to rounding.
+/// Adding rows one by one and merging two summaries must agree: the summary of a sequence equals the merged summaries
+/// of its parts, in any order, up to rounding.
 pub trait Summary: Clone {
-    /// One sample's entries.
+    /// Entries of one sample.
     type Row: Copy;
-    /// A row that changes nothing.
     const BLANK_ROW: Self::Row;
-    /// Takes one row in.
     fn add(&mut self, row: &Self::Row);
-    /// Takes one row into each of three summaries.
     fn add_three(targets: [&mut Self; 3], rows: [&Self::Row; 3]) {
         for (target, row) in targets.into_iter().zip(rows) {
             target.add(row);
         }
     }
-    /// Takes in all that `other` has taken in; `other` may be used up as scratch space.
+    /// Adds all rows of `other`, which may be used as scratch space.
     fn merge(&mut self, other: &mut Self);
 }
 
-/// The summary of the last `2 B` rows, at a constant cost per tick and without ever taking a row out again.
+/// The summary of the last `2 B` rows, at a constant cost per tick and without ever removing a row.
 ///
-/// Time is cut in blocks of `B`. In block `c`, after `p + 1` of its rows, the window holds those, all of block `c - 1`, and
-/// the last `B - p - 1` rows of block `c - 2`. Each tick
-/// 1. adds its row to two running summaries, one begun with block `c - 1`, one with block `c`;
-/// 2. takes one step backwards through block `c - 1`, keeping the summary of each of its endings for the next block;
-/// 3. merges the running summary begun with `c - 1` with the ending of `c - 2` kept one block ago.
+/// Time is divided into blocks of `B`. In block `c`, after `p + 1` of its rows, the window holds those, all of block
+/// `c - 1`, and the last `B - p - 1` rows of block `c - 2`. Each tick
+/// 1. adds its row to two running summaries, one that began with block `c - 1`, one with block `c`;
+/// 2. moves one step backwards through block `c - 1`, and stores the summary of each of its endings for the next block;
+/// 3. merges the running summary that began with `c - 1` with the ending of `c - 2` stored one block ago.
 ///
-/// So every tick does the same work; at the end of a block only names change. The endings of two blocks share one store: at
-/// each tick the ending just read makes room for the one just made, which the next block reads in the opposite direction.
+/// Every tick therefore does the same work; at the end of a block only names change. The endings of two blocks share
+/// one array: at each tick the ending just read makes room for the new one, which the next block reads in the opposite
+/// direction.
 #[derive(Clone, Debug)]
 pub struct SlidingWindow<S: Summary> {
     block: usize,
-    /// Rows of the block before (first or second half) and of this block (the other half).
+    /// Rows of the previous block (first or second half) and of this block (the other half).
     rows: Vec<S::Row>,
     this_half_first: bool,
-    /// Endings of block `c - 2` (unread) and of block `c - 1` (written), `B - 1` in all.
+    /// Endings of block `c - 2` (not yet read) and of block `c - 1` (written), `B - 1` in all.
     endings: Vec<S>,
     upwards: bool,
     position: usize,
-    /// Blocks completed so far, counted up to two.
+    /// Number of completed blocks, counted up to two.
     completed: usize,
     since_last_block: S,
     since_this_block: S,
@@ -52,8 +50,8 @@ pub struct SlidingWindow<S: Summary> {
 }
 
 impl<S: Summary> SlidingWindow<S> {
-    /// A window of `2 * block` rows. `empty` is the summary of no rows; `prior` is what every window begins with (for
-    /// example a ridge), the same as `empty` if nothing.
+    /// Creates a window of `2 * block` rows. `empty` is the summary of no rows; `prior` is the initial content of every
+    /// window (for example a ridge), or the same as `empty`.
     pub fn new(block: usize, empty: S, prior: S) -> Self {
         let block = block.max(1);
         Self {
@@ -73,33 +71,32 @@ impl<S: Summary> SlidingWindow<S> {
         }
     }
 
-    /// Number of rows in a full window.
+    /// Returns the number of rows in a full window.
     pub fn len(&self) -> usize {
         2 * self.block
     }
 
-    /// Whether no row was taken yet.
     pub fn is_empty(&self) -> bool {
         self.completed == 0 && self.position == 0
     }
 
-    /// Whether as many rows were taken in as the window holds.
+    /// Returns whether the window has as many rows as it can hold.
     pub fn is_full(&self) -> bool {
         self.completed >= 2
     }
 
-    /// The summary of the last `len()` rows (fewer at the beginning) on top of the prior.
+    /// Returns the summary of the last `len()` rows (fewer at the beginning), on top of the prior.
     pub fn current(&self) -> &S {
         &self.current
     }
 
-    /// Takes the newest row; the one `len()` rows older leaves.
+    /// Adds the newest row and removes the row `len()` rows older.
     pub fn push(&mut self, row: &S::Row) {
         self.advance(row, true);
     }
 
-    /// Like [`SlidingWindow::push`], but brings [`SlidingWindow::current`] up to date only if `wanted` (it is of no use
-    /// otherwise).
+    /// Like [`SlidingWindow::push`], but updates [`SlidingWindow::current`] only if `wanted` (otherwise its value is
+    /// invalid).
     pub fn advance(&mut self, row: &S::Row, wanted: bool) {
         let b = self.block;
         let p = self.position;
@@ -136,7 +133,6 @@ impl<S: Summary> SlidingWindow<S> {
         self.backwards.clone_from(&self.empty);
     }
 
-    /// Forgets all rows, in constant time.
     pub fn reset(&mut self) {
         self.position = 0;
         self.completed = 0;
@@ -157,7 +153,7 @@ mod tests {
         signal::Lanes,
     };
 
-    /// Which rows a summary holds, in order of their numbers.
+    /// The numbers of the rows in a summary, in order.
     #[derive(Clone, Debug, Default, PartialEq)]
     struct Numbers(Vec<usize>);
 
@@ -256,7 +252,7 @@ mod tests {
         }
     }
 
-    /// Condition squared, the amplification of rounding errors in a solution of the size of one.
+    /// Condition number squared: the amplification of rounding errors in a solution of magnitude one.
     fn solution_size(factor: &Factor, lane: usize) -> f64 {
         let mut solution = Solution::new(factor.columns());
         solution.solve(factor);

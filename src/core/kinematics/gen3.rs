@@ -1,34 +1,31 @@
 //! The chain of the Kinova Gen3 with seven joints and spherical wrist: constants, forward kinematics, Jacobian.
 //!
 //! Angles in rad, lengths in m, in the frame the base is mounted in. Constants from `ros2_kortex`
-//! (`kortex_description/arms/gen3/7dof/urdf/gen3_macro.xacro`, BSD-3-Clause), right angles exact where that file rounds them.
-//! Nothing is checked here: a joint angle that is not finite gives a pose that is not finite.
+//! (`kortex_description/arms/gen3/7dof/urdf/gen3_macro.xacro`, BSD-3-Clause), with exact right angles where that file
+//! rounds them. Nothing is checked here: a joint angle that is not finite gives a pose that is not finite.
 
 use nalgebra::{IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3};
 
-/// Joints of the arm.
 pub const JOINTS: usize = 7;
 
 /// One number per joint, from the base to the flange.
 pub type Joints = SVector<f64, JOINTS>;
 
-/// Largest speed of each joint, rad/s: 80 and 70 degrees per second (`gen3_macro.xacro`, `velocity`).
+/// Maximum speed of each joint, rad/s: 80 and 70 degrees per second (`gen3_macro.xacro`, `velocity`).
 pub const SPEED_RAD_S: [f64; JOINTS] = [1.3963, 1.3963, 1.3963, 1.3963, 1.2218, 1.2218, 1.2218];
 
-/// Largest acceleration of each joint, rad/s^2: the hard joint limits of `ros_kortex`.
+/// Maximum acceleration of each joint, rad/s^2: the hard joint limits of `ros_kortex`.
 pub const ACCELERATION_RAD_S2: [f64; JOINTS] = [4.94, 4.94, 4.94, 4.94, 9.5, 9.5, 9.5];
 
-/// Largest angle of each joint in both directions, rad (`gen3_macro.xacro`, `limit`); infinite for a joint that turns
-/// without end.
+/// Largest angle of each joint in both directions, rad (`gen3_macro.xacro`, `limit`); infinite for a continuous joint.
 pub const LIMIT_RAD: [f64; JOINTS] = [f64::INFINITY, 2.24, f64::INFINITY, 2.57, f64::INFINITY, 2.09, f64::INFINITY];
 
-/// Height of the shoulder (joint 2) above the base, m, and largest distance of the flange from it, m: all links in a
-/// straight line.
+/// Height of the shoulder (joint 2) above the base, m (`gen3_macro.xacro`: base to joint 1, plus joint 1 to joint 2).
 pub(super) const SHOULDER_M: f64 = 0.284_81;
-/// See [`SHOULDER_M`]; includes some millimetres because the joints are not exactly on one line.
+/// Maximum distance of the flange from the shoulder, m: the sum of the links in a straight line, plus 2 mm because the
+/// joints are not exactly on one line.
 pub(super) const REACH_M: f64 = 0.420_76 + 0.314_36 + 0.167_455 + 0.002;
 
-/// A fixed rotation about x between two links.
 #[derive(Clone, Copy)]
 enum Turn {
     Half,
@@ -37,7 +34,7 @@ enum Turn {
 }
 
 impl Turn {
-    /// `rotation * Rx(angle)`, exact: only columns and signs are exchanged.
+    /// Returns `rotation * Rx(angle)`, exact because only columns and signs are swapped.
     fn after(self, rotation: &Matrix3<f64>) -> Matrix3<f64> {
         let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
         match self {
@@ -73,7 +70,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// Forward kinematics of an arm with its base at `world_from_base`.
+    /// Computes the forward kinematics of an arm with its base at `world_from_base`.
     pub fn new(world_from_base: &IsometryMatrix3<f64>, joint_rad: &Joints) -> Self {
         let mut rotation = *world_from_base.rotation.matrix();
         let mut place_m = world_from_base.translation.vector;
@@ -93,12 +90,13 @@ impl Chain {
         Self { origin_m, axis, world_from_flange: IsometryMatrix3::from_parts(Translation3::from(place_m), rotation) }
     }
 
-    /// Velocity (m/s) of a point (m) that is fixed to the flange, per rad/s of one joint.
+    /// Returns the velocity (m/s) of a point (m) that is fixed to the flange, per rad/s of one joint.
     pub fn point_per_joint(&self, joint: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
         self.axis[joint].cross(&(point_m - self.origin_m[joint]))
     }
 
-    /// Geometric Jacobian of a point (m) fixed to the flange: rows velocity (m/s) and angular velocity (rad/s), in `world`.
+    /// Returns the geometric Jacobian of a point (m) fixed to the flange: rows velocity (m/s) and angular velocity
+    /// (rad/s), in `world`.
     pub fn jacobian(&self, point_m: &Vector3<f64>) -> SMatrix<f64, 6, JOINTS> {
         let mut jacobian = SMatrix::<f64, 6, JOINTS>::zeros();
         for joint in 0..JOINTS {
@@ -109,14 +107,14 @@ impl Chain {
     }
 }
 
-/// `rotation * Rz(angle)`.
+/// Returns `rotation * Rz(angle)`.
 fn turned_about_z(rotation: &Matrix3<f64>, angle_rad: f64) -> Matrix3<f64> {
     let (sin, cos) = libm::sincos(angle_rad);
     let [x, y, z] = [0, 1, 2].map(|i| rotation.column(i).into_owned());
     Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, z])
 }
 
-/// Smallest distance of a joint from its limit, rad; negative beyond it.
+/// Returns the smallest distance of a joint from its limit, rad; negative beyond it.
 ///
 /// ```
 /// use nima_core::kinematics::{Joints, LIMIT_RAD, limit_margin_rad};

@@ -1,34 +1,31 @@
-//! Hand-eye mapping: the tip moves in the endoscope's picture as the hand moves in front of it.
+//! Hand-eye mapping: the tip moves in the endoscope image as the hand moves in front of the screen.
 //!
-//! Frames: `leader` (the haptic device), `view` (the endoscope's picture: x right, y down, z into the picture),
-//! `world`. Positions in m. When the clutch is released, the hand is coupled to the tip at their present positions:
-//! engaging, releasing and changing the mapping never move the tip. Input that is not finite gives no motion.
+//! Frames: `leader` (the haptic device), `view` (the endoscope image: x right, y down, z into the image), `world`.
+//! Positions in m. When the clutch is released, the hand is coupled to the tip at their current positions: engaging,
+//! releasing and changing the mapping never move the tip. Input that is not finite gives no motion.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use thiserror::Error;
 
 use crate::limits::SCALE;
 
-/// Why a mapping is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MappingError {
-    /// The rotation is not finite.
-    #[error("the rotation from the leader to the arm's base is not finite: give the endoscope's pose again")]
+    #[error("the rotation from the leader to the arm's base is not finite: enter the endoscope's pose again")]
     Rotation,
-    /// The scale is out of range.
-    #[error("the motion scale is {scale}: give {SCALE}")]
+    #[error("the motion scale {scale} is out of range: use {SCALE}")]
     Scale { scale: f64 },
 }
 
-/// `view_from_leader` of an Omega below a screen whose base faces the user (x towards the user, y to the user's right,
-/// z up).
+/// Returns `view_from_leader` of an Omega below a screen whose base faces the user (x towards the user, y to the user's
+/// right, z up).
 pub fn view_from_omega() -> UnitQuaternion<f64> {
     let matrix = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0);
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
 }
 
-/// `world_from_view` measured by the tracker `c`, which sees the marker `m` on the instrument and another one on the
-/// endoscope.
+/// Returns `world_from_view`, measured by the tracker `c`, which detects the marker `m` on the instrument and another
+/// marker on the endoscope.
 pub fn world_from_tracked_view(
     world_from_m: &UnitQuaternion<f64>,
     m_from_c: &UnitQuaternion<f64>,
@@ -45,9 +42,9 @@ pub fn world_from_tracked_view(
 ///
 /// let mapping = Mapping::new(&UnitQuaternion::identity(), &view_from_omega(), 0.5)?;
 /// let hand_m = Vector3::new(0.02, 0.0, 0.0);
-/// assert!((mapping.to_tip(&hand_m).norm() - 0.01).abs() < 1e-12, "half the way");
+/// assert!((mapping.to_tip(&hand_m).norm() - 0.01).abs() < 1e-12, "half the travel");
 /// let force_n = mapping.force_to_hand(&mapping.to_tip(&hand_m).normalize());
-/// assert!((force_n - Vector3::x()).norm() < 1e-12, "a force along the tip's way is felt along the hand's way");
+/// assert!((force_n - Vector3::x()).norm() < 1e-12, "a force along the tip's path is felt along the hand's path");
 /// assert_eq!(mapping.scaled(100.0), Err(MappingError::Scale { scale: 100.0 }));
 /// # Ok::<(), MappingError>(())
 /// ```
@@ -58,14 +55,14 @@ pub struct Mapping {
 }
 
 impl Default for Mapping {
-    /// The leader's axes are those of the workspace, scale 1.
+    /// The leader's axes coincide with the workspace axes; scale 1.
     fn default() -> Self {
         Self { world_from_leader: UnitQuaternion::identity(), scale: 1.0 }
     }
 }
 
 impl Mapping {
-    /// The mapping `world_from_view * view_from_leader`; `scale` is the tip's distance per distance of the hand.
+    /// Creates the mapping `world_from_view * view_from_leader`; `scale` is the tip's travel per travel of the hand.
     ///
     /// # Errors
     /// [`MappingError`] if a rotation is not finite or the scale is not within [`SCALE`].
@@ -85,7 +82,7 @@ impl Mapping {
         Ok(Self { world_from_leader, scale })
     }
 
-    /// The same with another scale.
+    /// Returns the mapping with another scale.
     ///
     /// # Errors
     /// [`MappingError`] if the scale is not within [`SCALE`].
@@ -93,23 +90,23 @@ impl Mapping {
         if SCALE.contains(scale) { Ok(Self { scale, ..*self }) } else { Err(MappingError::Scale { scale }) }
     }
 
-    /// Rotation from the leader's frame to `world`.
+    /// Returns the rotation from the leader's frame to `world`.
     pub const fn world_from_leader(&self) -> &UnitQuaternion<f64> {
         &self.world_from_leader
     }
 
-    /// The tip's distance per distance of the hand.
+    /// Returns the tip's travel per travel of the hand.
     pub const fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Displacement of the tip (m, `world`) for a displacement of the hand (m, `leader`).
+    /// Returns the displacement of the tip (m, `world`) for a displacement of the hand (m, `leader`).
     pub fn to_tip(&self, hand_m: &Vector3<f64>) -> Vector3<f64> {
         self.world_from_leader * hand_m * self.scale
     }
 
-    /// A force at the tip (N, `world`) in the leader's frame. Forces are not scaled here; the gain belongs to the
-    /// gates.
+    /// Returns a force at the tip (N, `world`) in the leader's frame. Forces are not scaled here; the gates apply the
+    /// gain.
     pub fn force_to_hand(&self, tip_n: &Vector3<f64>) -> Vector3<f64> {
         self.world_from_leader.inverse() * tip_n
     }
@@ -125,12 +122,11 @@ pub struct Hand {
 }
 
 impl Hand {
-    /// A hand on a device without a wrist.
+    /// Creates a hand on a device without a wrist.
     pub const fn at(position_m: Vector3<f64>) -> Self {
         Self { position_m, orientation: None }
     }
 
-    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         self.position_m.iter().all(|x| x.is_finite())
             && self.orientation.is_none_or(|q| q.coords.iter().all(|x| x.is_finite()))
@@ -140,13 +136,10 @@ impl Hand {
 /// Commanded pose of the tip, in `world`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// Position, m.
     pub tip_m: Vector3<f64>,
-    /// Orientation of the instrument's jaws.
     pub world_from_jaws: UnitQuaternion<f64>,
 }
 
-/// State of the coupling between hand and tip.
 #[derive(Clone, Copy, Debug)]
 pub struct HandEye {
     mapping: Mapping,
@@ -157,12 +150,11 @@ pub struct HandEye {
 }
 
 impl HandEye {
-    /// Not coupled; the tip holds `target`.
+    /// Creates an uncoupled state in which the tip holds `target`.
     pub const fn new(mapping: Mapping, target: Target) -> Self {
         Self { mapping, target, hand: None, engaged: false }
     }
 
-    /// The present mapping.
     pub const fn mapping(&self) -> &Mapping {
         &self.mapping
     }
@@ -172,25 +164,23 @@ impl HandEye {
         self.mapping = mapping;
     }
 
-    /// Couples the hand to the tip from the next step on. `target` is the present command to the tip.
+    /// Couples the hand to the tip from the next step on. `target` is the current command to the tip.
     pub const fn engage(&mut self, target: Target) {
         self.target = target;
         self.hand = None;
         self.engaged = true;
     }
 
-    /// Ends the coupling; the target stays.
     pub const fn release(&mut self) {
         self.engaged = false;
         self.hand = None;
     }
 
-    /// Whether hand and tip are coupled.
     pub const fn is_engaged(&self) -> bool {
         self.engaged
     }
 
-    /// Updates the hand's pose; returns the command to the tip.
+    /// Updates the hand's pose and returns the command to the tip.
     pub fn step(&mut self, hand: &Hand) -> Target {
         if !self.engaged || !hand.is_finite() {
             return self.target;
@@ -226,7 +216,7 @@ mod tests {
         }
     }
 
-    /// The endoscope looks straight down; the right of its picture is the base's -y.
+    /// The endoscope looks straight down; the right of its image is the base's -y.
     fn looking_down() -> UnitQuaternion<f64> {
         let columns = [-Vector3::y(), -Vector3::x(), -Vector3::z()];
         UnitQuaternion::from_rotation_matrix(&Rotation3::from_basis_unchecked(&columns))
@@ -248,7 +238,7 @@ mod tests {
         hand_eye.engage(target());
         hand_eye.step(&hand(0.0, 0.0, 0.0));
         let tip_m = hand_eye.step(&hand(-0.02, 0.04, 0.0)).tip_m;
-        // 40 mm to the right and 20 mm away, halved: the base's -y, and down into the picture.
+        // 40 mm to the right and 20 mm away, halved: the base's -y, and down into the image.
         assert!((tip_m - target().tip_m - Vector3::new(0.0, -0.02, -0.01)).norm() < 1e-12, "{tip_m}");
     }
 
@@ -288,7 +278,7 @@ mod tests {
         let held = hand(0.0, 0.0, 0.0);
         hand_eye.step(&Hand { orientation: Some(start), ..held });
         let jaws = hand_eye.step(&Hand { orientation: Some(turned), ..held });
-        // A rotation about the line of sight (away from the user) becomes one about the picture's z: the base's -z.
+        // A rotation about the line of sight (away from the user) becomes one about the image's z: the base's -z.
         let expected = UnitQuaternion::from_scaled_axis(-Vector3::z() * 0.3) * target().world_from_jaws;
         assert!(jaws.world_from_jaws.angle_to(&expected) < 1e-12);
         assert_eq!(jaws.tip_m, target().tip_m);

@@ -10,11 +10,11 @@ use thiserror::Error;
 use super::gen3::{Chain, Joints};
 use crate::frames::from_roll_pitch_yaw_deg;
 
-/// Mounting of the arm and geometry of its instrument. Everything is measured on the rig, so there are no defaults.
+/// Mounting of the arm and geometry of its instrument. All values are measured on the rig, so there are no defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ArmSettings {
-    /// Position of the arm's base in the workspace frame, m; zero if the workspace frame is that of the base.
+    /// Position of the arm's base in the workspace frame, m; zero if the workspace frame is the base's frame.
     #[serde(default)]
     pub base_m: Vector3<f64>,
     /// Roll, pitch, yaw of `world_from_base`, degrees.
@@ -28,14 +28,14 @@ pub struct ArmSettings {
     pub shaft_m: f64,
 }
 
-/// Why the settings of an arm are invalid.
+/// Reason why the settings of an arm are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ArmError {
-    /// A length or angle is not finite.
-    #[error("the arm's {field} is not a finite number: measure it and write it into the rig file")]
+    #[error("the arm's {field} is not a finite number: measure it and enter it in the rig file")]
     NotFinite { field: &'static str },
-    /// The shaft's length is zero, or longer than any instrument.
-    #[error("the shaft's length is {shaft_m} m: it must be above 0 and at most 1 m, from the sensor to the tip")]
+    #[error(
+        "the shaft length of {shaft_m} m is out of range: use more than 0 and at most 1 m, from the sensor to the tip"
+    )]
     ShaftLength { shaft_m: f64 },
 }
 
@@ -61,7 +61,7 @@ pub struct Arm {
 }
 
 impl Arm {
-    /// Checks the settings.
+    /// Creates an arm from checked settings.
     ///
     /// # Errors
     /// [`ArmError`] if a number is not finite or the shaft's length is not in (0, 1] m.
@@ -84,22 +84,20 @@ impl Arm {
         })
     }
 
-    /// Distance from the sensor to the tip, m.
+    /// Returns the distance from the sensor to the tip, m.
     pub const fn shaft_m(&self) -> f64 {
         self.shaft_m
     }
 
-    /// Pose of the base.
     pub const fn world_from_base(&self) -> &IsometryMatrix3<f64> {
         &self.world_from_base
     }
 
-    /// Pose of the wrist sensor on the flange.
     pub const fn flange_from_s1(&self) -> &IsometryMatrix3<f64> {
         &self.flange_from_s1
     }
 
-    /// Pose of arm and instrument for these joint angles (rad).
+    /// Returns the pose of arm and instrument for these joint angles (rad).
     pub fn pose(&self, joint_rad: &Joints) -> Pose {
         let chain = Chain::new(&self.world_from_base, joint_rad);
         let world_from_s1 = chain.world_from_flange * self.flange_from_s1;
@@ -118,31 +116,28 @@ fn isometry(place_m: &Vector3<f64>, angles_deg: &Vector3<f64>) -> IsometryMatrix
 /// Arm and instrument for one set of joint angles, all in `world`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
-    /// The joints.
     pub chain: Chain,
-    /// Pose of the wrist sensor.
     pub world_from_s1: IsometryMatrix3<f64>,
     /// Directions of the sensor's x and y, across the shaft.
     pub across: [Vector3<f64>; 2],
     /// Direction of the shaft towards the tip, unit length.
     pub direction: Vector3<f64>,
-    /// Position of the tip, m.
     pub tip_m: Vector3<f64>,
 }
 
 impl Pose {
-    /// Orientation of the wrist sensor, in the form of [`crate::frames::WristSample`].
+    /// Returns the orientation of the wrist sensor, in the form of [`crate::frames::WristSample`].
     pub fn orientation(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::from_rotation_matrix(&self.world_from_s1.rotation)
     }
 
-    /// Distance of the tip beyond a point (m) along the shaft, m.
+    /// Returns the distance of the tip beyond a point (m) along the shaft, m.
     pub fn insertion_m(&self, trocar_m: &Vector3<f64>) -> f64 {
         (self.tip_m - trocar_m).dot(&self.direction)
     }
 
-    /// Vector from a point to the nearest point of the shaft's axis, m; its length is the distance between axis and
-    /// point.
+    /// Returns the vector from a point to the nearest point of the shaft's axis, m; its length is the distance between
+    /// axis and point.
     pub fn axis_miss_m(&self, trocar_m: &Vector3<f64>) -> Vector3<f64> {
         let way_m = self.tip_m - trocar_m;
         way_m - self.direction * way_m.dot(&self.direction)
@@ -166,7 +161,8 @@ mod tests {
     #[test]
     fn the_tip_is_where_chain_adapter_and_shaft_put_it() {
         let arm = Arm::new(&settings()).unwrap();
-        // With the arm stretched upwards the flange points up, so the tip is above it by adapter and shaft.
+        // With the arm stretched upwards the flange points up, so the tip is above it by the lengths of adapter and
+        // shaft.
         let pose = arm.pose(&Joints::zeros());
         assert!((pose.direction - Vector3::z()).norm() < 1e-12);
         assert!((pose.tip_m.z - (1.187_385 + 0.06 + 0.42)).abs() < 1e-9);

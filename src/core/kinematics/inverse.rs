@@ -1,9 +1,10 @@
 //! Inverse kinematics through the trocar, one step per tick from the present joint angles; the result is continuous.
 //!
 //! Takes the target of the tip (m, `world`), at any time and any distance. Returns joint angles (rad) within the active
-//! [`JointLimits`], clear of the ends of their ranges, with the shaft through the trocar. What cannot be reached in one
-//! period is reached later: the shaft rotates and slides in proportion along a path through the trocar, and every limit
-//! slows all joints by a common factor. A target that is not finite brakes the arm. Nothing here allocates or waits.
+//! [`JointLimits`], clear of the ends of their ranges, with the shaft through the trocar. A target that is too far for
+//! one period is reached later: the shaft rotates and slides in proportion along a path through the trocar, and every
+//! limit slows all joints by a common factor. A target that is not finite brakes the arm. Nothing here allocates or
+//! waits.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -17,30 +18,30 @@ use super::{
     velocity::{LENGTH_M, Parts, Task, Wish, turn_towards},
 };
 
-/// Share of the joints' speed limits that is used for motion; the manufacturer's planning limits (`ros_kortex`, hard
+/// Fraction of the joints' speed limits that is used for motion; the manufacturer's planning limits (`ros_kortex`, hard
 /// joint limits) are 95 %. The remainder is reserved for keeping the shaft in the trocar while braking.
 const SPEED_SHARE: f64 = 0.95;
-/// Largest speed of the tip and of the shaft's rotation: the manufacturer's twist limits (`ros_kortex`,
+/// Maximum speed of the tip and of the shaft's rotation: the manufacturer's twist limits (`ros_kortex`,
 /// `twist_limits.yaml`), m/s and rad/s.
 pub(super) const TIP_SPEED_M_S: f64 = 0.5;
 /// See [`TIP_SPEED_M_S`].
 pub(super) const TURN_SPEED_RAD_S: f64 = 1.74;
-/// Distance that joints keep from their limits, rad, so that a drive that overshoots does not fault.
+/// Distance that joints keep from their limits, rad, so that an overshooting drive does not report a fault.
 pub const KEEP_OFF_RAD: f64 = 0.02;
-/// Near a limit, a joint's speed is at most this factor times the distance, 1/s.
+/// Near a limit, a joint's speed is at most this factor times its distance from the limit, 1/s. Chosen.
 const APPROACH_PER_S: f64 = 20.0;
-/// Share of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of the
-/// path.
+/// Fraction of the acceleration used for stopping at a target or a joint limit; the remainder is for the curvature of
+/// the path.
 const BRAKING_SHARE: f64 = 0.5;
 /// Averaging time of the target's own motion, s, so that tremor and noise of the handle are not followed.
 const TARGET_MOTION_S: f64 = 0.005;
-/// Speed of the posture's optimisation along the gradient, rad/s, and the share of the joints' speed that it may use.
+/// Speed of the posture's optimisation along the gradient, rad/s, and the fraction of the joints' speed that it may
+/// use. Chosen.
 const POSTURE_PER_S: f64 = 1.0;
 const POSTURE_SHARE: f64 = 0.2;
-/// If the shaft misses the trocar by more than this at the start, the instrument is not in it, m.
+/// If the shaft misses the trocar by more than this at the start, m, the instrument is not in the trocar.
 pub const START_MISS_M: f64 = 5e-3;
 
-/// Quality of the pose after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
     /// Distance of the shaft's axis from the trocar, m.
@@ -52,18 +53,14 @@ pub struct Measures {
     /// How well the joints can move the shaft in its worst direction, m/rad (rotation is weighted with 0.3 m); 0 is a
     /// singular pose.
     pub dexterity: f64,
-    /// Share of the planned motion that the limits allowed in this period, 0 to 1.
+    /// Fraction of the planned motion that the limits allowed in this period, 0 to 1.
     pub granted: f64,
 }
 
-/// Result of one period.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Commanded joint angles, rad.
     pub joint_rad: Joints,
-    /// How the target was outside the permitted space.
     pub confined: Confined,
-    /// Quality of the pose.
     pub measures: Measures,
 }
 
@@ -101,12 +98,11 @@ pub struct Inverse {
     rcm: Rcm,
     period_s: f64,
     limits: JointLimits,
-    /// Largest change of each joint's step from one period to the next, rad.
+    /// Maximum change of each joint's step from one period to the next, rad.
     change_rad: Joints,
     joint_rad: Joints,
     pose: Pose,
     dexterity: f64,
-    /// The last step, rad.
     moved_rad: Joints,
     /// Difference between command and measured angle, rad.
     ahead_rad: Joints,
@@ -116,7 +112,7 @@ pub struct Inverse {
 }
 
 impl Inverse {
-    /// Starts at these joint angles (rad), for a loop of this period (s).
+    /// Starts from these joint angles (rad), for a loop of this period (s).
     ///
     /// # Errors
     /// [`StartError`] if the arm cannot start from there.
@@ -157,7 +153,7 @@ impl Inverse {
         Ok(inverse)
     }
 
-    /// Uses these limits instead of the arm's speed limits alone.
+    /// Replaces the arm's plain speed limits by these limits.
     #[must_use]
     pub fn within(self, limits: JointLimits) -> Self {
         Self { limits, change_rad: limits.acceleration_rad_s2 * (self.period_s * self.period_s), ..self }
@@ -169,27 +165,23 @@ impl Inverse {
         self.ahead_rad = self.joint_rad - measured_rad;
     }
 
-    /// Whether all joints are at rest.
     pub fn is_still(&self) -> bool {
         self.moved_rad == Joints::zeros()
     }
 
-    /// Commanded joint angles, rad.
     pub const fn joint_rad(&self) -> &Joints {
         &self.joint_rad
     }
 
-    /// Pose at those angles.
     pub const fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// The trocar.
     pub const fn rcm(&self) -> &Rcm {
         &self.rcm
     }
 
-    /// Height of elbow and wrist above the trocar, m.
+    /// Returns the height of elbow and wrist above the trocar, m.
     pub fn clearance_m(&self) -> f64 {
         posture::clearance_m(&self.pose, &self.rcm)
     }
@@ -222,7 +214,7 @@ impl Inverse {
         self.answer(None, Confined::default(), 0.0)
     }
 
-    /// The components of the step; `None` if they cannot be computed, in which case the arm holds.
+    /// Returns the components of the step; `None` if they cannot be computed, in which case the arm holds.
     fn solve(&mut self, wish: &Wish) -> Option<Parts> {
         let task = Task::new(&self.pose, &self.rcm.settings().trocar_m);
         let parts = task.solve(wish, &posture::freedom(&self.joint_rad));
@@ -233,7 +225,7 @@ impl Inverse {
         parts
     }
 
-    /// The motion wanted in this period, before limits.
+    /// Returns the motion wanted in this period, before limits.
     fn wish(&mut self, goal: &Shaft) -> Wish {
         let way_m = self.way_m(goal);
         let moved_m = self.last_goal.map_or_else(Vector3::zeros, |last| way_m - self.way_m(&last));
@@ -254,20 +246,20 @@ impl Inverse {
         }
     }
 
-    /// Displacement that brings the axis back to the trocar, along `Pose::across`, m.
+    /// Returns the displacement that brings the axis back to the trocar, along `Pose::across`, m.
     fn to_trocar_m(&self) -> Vector2<f64> {
         let miss_m = self.pose.axis_miss_m(&self.rcm.settings().trocar_m);
         -Vector2::new(miss_m.dot(&self.pose.across[0]), miss_m.dot(&self.pose.across[1]))
     }
 
-    /// Displacement to a shaft: rotation along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
+    /// Returns the displacement to a shaft: rotation along `Pose::across` times [`LENGTH_M`], and sliding inwards, m.
     fn way_m(&self, goal: &Shaft) -> Vector3<f64> {
         let turn = turn_towards(&self.pose, &goal.direction) * LENGTH_M;
         Vector3::new(turn.x, turn.y, goal.insertion_m - self.pose.insertion_m(&self.rcm.settings().trocar_m))
     }
 
-    /// Share of a motion (as in [`Self::way_m`]) that tip and shaft may make in one period, rotating and sliding in
-    /// proportion.
+    /// Returns the fraction of a motion (as in [`Self::way_m`]) that tip and shaft may make in one period while
+    /// rotating and sliding in proportion.
     fn twist_share(&self, motion_m: &Vector3<f64>, insertion_m: f64) -> f64 {
         let turn_rad = motion_m.xy().norm() / LENGTH_M;
         let insertion_m = insertion_m.max(self.pose.insertion_m(&self.rcm.settings().trocar_m));
@@ -276,7 +268,7 @@ impl Inverse {
         tip.min(shaft).min(1.0)
     }
 
-    /// Share of the correction that may be made in this period; limited in acceleration too.
+    /// Returns the fraction of the correction that may be made in this period; its acceleration is limited too.
     fn correction_share(&self, parts: &Parts, [least, most]: &[Joints; 2]) -> f64 {
         let braking = BRAKING_SHARE * pace::braking(&parts.correction, &self.change_rad);
         let stopping = pace::stopping_step(1.0, braking).min((parts.returning + braking).max(0.0));
@@ -284,7 +276,7 @@ impl Inverse {
     }
 
     /// Moves the joints by as much of the components as the limits allow, the correction at the trocar first; returns
-    /// the share of the motion.
+    /// the fraction of the motion.
     fn take(&mut self, parts: &Parts, wish: &Wish, insertion_m: f64) -> f64 {
         let reserve_rad = self.change_rad * BRAKING_SHARE;
         let approach = pace::stopping_step(1.0, pace::braking(&parts.motion, &reserve_rad));
@@ -314,14 +306,14 @@ impl Inverse {
         self.pose = self.arm.pose(&self.joint_rad);
     }
 
-    /// Distance of each joint from both ends of its usable range, rad; negative beyond them.
+    /// Returns the distance of each joint from both ends of its usable range, rad; negative beyond them.
     fn room_rad(&self) -> [Joints; 2] {
         let limit_rad = Joints::from(LIMIT_RAD).add_scalar(-KEEP_OFF_RAD);
         [limit_rad + self.joint_rad, limit_rad - self.joint_rad]
     }
 
-    /// Smallest and largest change of each joint in this period, rad: limited by its speed, by the distance to the end
-    /// of its range, and, if the arm is blocked, by its distance from the measured angle.
+    /// Returns the smallest and largest change of each joint in this period, rad: limited by its speed, by the distance
+    /// to the end of its range, and, if the arm is blocked, by its distance from the measured angle.
     fn bounds(&self) -> [Joints; 2] {
         let mut least = Joints::zeros();
         let mut most = Joints::zeros();

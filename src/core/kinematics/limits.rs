@@ -1,8 +1,8 @@
-//! Speed and acceleration limits of the joints. [`Inverse`](super::Inverse) plans within them; a driver checks them and
-//! changes nothing.
+//! Speed and acceleration limits of the joints. [`Inverse`](super::Inverse) plans within them; a driver only checks
+//! them.
 //!
 //! Only the inverse kinematics may slow the joints down. Slowing a single joint would take the shaft out of the trocar:
-//! all joints must be slowed along the same path, which only the inverse kinematics knows.
+//! all joints must be slowed along the same path, which only the inverse kinematics can compute.
 
 use super::gen3::{ACCELERATION_RAD_S2, JOINTS, Joints, SPEED_RAD_S};
 
@@ -16,16 +16,15 @@ use super::gen3::{ACCELERATION_RAD_S2, JOINTS, Joints, SPEED_RAD_S};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimits {
-    /// Largest speed, rad/s.
     pub speed_rad_s: Joints,
     /// Largest acceleration, rad/s^2; infinite if only the path matters.
     pub acceleration_rad_s2: Joints,
-    /// Largest difference between commanded and measured angle, rad; an arm that is further behind is blocked.
+    /// Maximum difference between commanded and measured angle, rad; an arm that is further behind is blocked.
     pub lead_rad: f64,
 }
 
 impl JointLimits {
-    /// The arm's speed limits only, for the search of poses.
+    /// Returns the arm's speed limits alone, for the search of poses.
     pub fn speed_only() -> Self {
         Self {
             speed_rad_s: Joints::from(SPEED_RAD_S),
@@ -34,7 +33,7 @@ impl JointLimits {
         }
     }
 
-    /// Limits of an arm that may use this share of its speed, above 0 to 1.
+    /// Returns the limits of an arm that may use this fraction of its speed, above 0 to 1.
     pub fn of_arm(speed_fraction: f64, lead_rad: f64) -> Self {
         Self {
             speed_rad_s: Joints::from(SPEED_RAD_S) * speed_fraction.clamp(0.0, 1.0),
@@ -43,7 +42,7 @@ impl JointLimits {
         }
     }
 
-    /// Longest time to brake from full speed with one common factor for all joints, s.
+    /// Returns the longest time to brake from full speed with one common factor for all joints, s.
     pub fn braking_s(&self) -> f64 {
         (0..JOINTS).map(|joint| self.speed_rad_s[joint] / self.acceleration_rad_s2[joint]).fold(0.0, f64::max)
     }

@@ -6,8 +6,8 @@
 //! reason. A tick always has a result: the nearest permitted position, or standing still. Nothing in a tick allocates,
 //! waits or loops without bound.
 //!
-//! `HandEye::step` → target of the tip → `Inverse::step` → joint angles. To start: search a pose with [`find`], move
-//! there, `Inverse::new`.
+//! `HandEye::step` → target of the tip → `Inverse::step` → joint angles. To start: find a pose with [`find`], move
+//! there, then call `Inverse::new`.
 
 mod gen3;
 mod hand_eye;

@@ -1,21 +1,22 @@
-//! How much of a planned step may be taken, given the acceleration limits of the joints. One factor applies to all
-//! joints, so that the shaft stays in the trocar. Steps are in rad per period.
+//! Computes how much of a planned step may be taken, given the acceleration limits of the joints. One factor applies to
+//! all joints, so that the shaft stays in the trocar. Steps are in rad per period.
 
 use super::gen3::{JOINTS, Joints};
 
-/// Largest first step on a path of length `way` (in the same unit) that still leaves room to stop, when each period may
-/// reduce the step by `braking`: `v^2 / 2a + v = way`. Without a limit on braking it is the whole path.
+/// Returns the largest first step on a path of length `way` (in the same unit) that still leaves room to stop, when
+/// each period may reduce the step by `braking`: `v^2 / 2a + v = way`. Without a limit on braking it is the whole path.
 pub(super) fn stopping_step(way: f64, braking: f64) -> f64 {
     if way > 0.0 { 2.0 * way / (1.0 + (1.0 + 2.0 * way / braking).sqrt()) } else { 0.0 }
 }
 
-/// Largest change per period of a factor on this step such that no joint changes its speed by more than `change`.
+/// Returns the largest change per period of a factor on this step such that no joint changes its speed by more than
+/// `change`.
 pub(super) fn braking(step: &Joints, change: &Joints) -> f64 {
     (0..JOINTS).map(|joint| change[joint] / step[joint].abs()).fold(f64::INFINITY, f64::min)
 }
 
-/// Number of periods for which a step can be repeated until a joint has used up its `room` (rad, below and above);
-/// limited to a large number.
+/// Returns the number of periods for which a step can be repeated until a joint has used up its `room` (rad, below and
+/// above); limited to a large number.
 pub(super) fn periods(step: &Joints, room: &[Joints; 2]) -> f64 {
     let mut periods: f64 = 1e9;
     for joint in 0..JOINTS {
@@ -27,9 +28,9 @@ pub(super) fn periods(step: &Joints, room: &[Joints; 2]) -> f64 {
     periods
 }
 
-/// From `coast` (continue as now) as far towards `wanted` as the allowed change of speed since `moved` permits. Every
-/// step between the two keeps the shaft in the trocar. If even coasting exceeds the limit, because the path is curved,
-/// the excess is the smallest possible on that line.
+/// Returns the step from `coast` (continue as now) as far towards `wanted` as the permitted change of speed since
+/// `moved` allows. Every step between the two keeps the shaft in the trocar. If even coasting exceeds the limit,
+/// because the path is curved, the excess is the smallest possible on that line.
 pub(super) fn towards(moved: &Joints, coast: &Joints, wanted: &Joints, change: &Joints) -> Joints {
     let mut least = 0.0_f64;
     let mut most = 1.0_f64;
@@ -47,13 +48,13 @@ pub(super) fn towards(moved: &Joints, coast: &Joints, wanted: &Joints, change: &
     if share < 1.0 { coast + (wanted - coast) * share } else { *wanted }
 }
 
-/// Whether all joints can come to rest from this step, slowed by one common factor, before one of them has used up its
-/// room.
+/// Returns whether all joints can come to rest from this step, slowed by one common factor, before one of them has used
+/// up its room.
 pub(super) fn can_stop(step: &Joints, room: &[Joints; 2], change: &Joints) -> bool {
     0.5 / braking(step, change) <= periods(step, room)
 }
 
-/// Largest share (0 to 1) of a step that stays within the bounds (`least <= 0 <= most` up to rounding).
+/// Returns the largest fraction (0 to 1) of a step that stays within the bounds (`least <= 0 <= most` up to rounding).
 pub(super) fn share_within(step: &Joints, least: &Joints, most: &Joints) -> f64 {
     let mut share: f64 = 1.0;
     for joint in 0..JOINTS {

@@ -11,11 +11,12 @@ use super::{
     velocity::Task,
 };
 
-/// Distance from a limit at which the cost of a joint begins, rad.
+/// Distance from a limit at which the cost of a joint begins, rad. Chosen.
 pub(super) const SOFT_RAD: f64 = 0.35;
-/// Height above the trocar below which elbow and wrist are pushed up, m: half a link's thickness, a drape and a margin.
+/// Height above the trocar below which elbow and wrist are pushed up, m: half the thickness of a link, plus a drape and
+/// a margin.
 pub(super) const CLEARANCE_M: f64 = 0.12;
-/// Weights of the other two terms relative to that of the limits.
+/// Weights of the other two terms relative to the limit term. Chosen.
 const MANIPULABILITY_WEIGHT: f64 = 0.2;
 const CLEARANCE_WEIGHT: f64 = 0.5;
 /// Smallest value of the squared manipulability ((m/rad)^10): keeps the logarithm finite.
@@ -26,8 +27,8 @@ const STEP_RAD: f64 = 1e-6;
 /// Joints whose positions (elbow, wrist) must stay above the patient.
 const HIGH_JOINTS: [usize; 2] = [3, 5];
 
-/// Cost of a posture: terms for joint limits and clearance, which are zero far from them, and the logarithm of the
-/// manipulability.
+/// Returns the cost of a posture: terms for joint limits and clearance, which are zero far from them, and the logarithm
+/// of the manipulability.
 fn null_space_cost(pose: &Pose, joint_rad: &Joints, rcm: &Rcm) -> f64 {
     let limits: f64 = joint_rad.iter().zip(LIMIT_RAD).map(|(q, limit)| lack(limit - q.abs(), SOFT_RAD)).sum();
     let low: f64 = heights_m(pose, rcm).iter().map(|height_m| lack(*height_m, CLEARANCE_M)).sum();
@@ -35,7 +36,7 @@ fn null_space_cost(pose: &Pose, joint_rad: &Joints, rcm: &Rcm) -> f64 {
     limits + CLEARANCE_WEIGHT * low - 0.5 * MANIPULABILITY_WEIGHT * libm::log(squared + LOST)
 }
 
-/// Half the squared deficit of `have` against `enough`, relative to `enough`.
+/// Returns half the squared deficit of `have` against `enough`, relative to `enough`.
 fn lack(have: f64, enough: f64) -> f64 {
     let deficit = (enough - have).max(0.0) / enough;
     0.5 * (deficit * deficit)
@@ -45,12 +46,12 @@ fn heights_m(pose: &Pose, rcm: &Rcm) -> [f64; HIGH_JOINTS.len()] {
     HIGH_JOINTS.map(|joint| (rcm.settings().trocar_m - pose.chain.origin_m[joint]).dot(rcm.inward()))
 }
 
-/// Height of elbow and wrist above the trocar (against the direction into the body), m.
+/// Returns the height of elbow and wrist above the trocar (against the direction into the body), m.
 pub(super) fn clearance_m(pose: &Pose, rcm: &Rcm) -> f64 {
     heights_m(pose, rcm).into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Negative gradient of the cost, per rad.
+/// Returns the negative gradient of the cost, per rad.
 pub(super) fn relief(arm: &Arm, rcm: &Rcm, pose: &Pose, joint_rad: &Joints) -> Joints {
     let here = null_space_cost(pose, joint_rad, rcm);
     let mut relief = Joints::zeros();
@@ -62,7 +63,7 @@ pub(super) fn relief(arm: &Arm, rcm: &Rcm, pose: &Pose, joint_rad: &Joints) -> J
     relief
 }
 
-/// Weight of each joint: 1 far from its limit, almost 0 at it, smooth in between.
+/// Returns the weight of each joint: 1 far from its limit, almost 0 at it, smooth in between.
 pub(super) fn freedom(joint_rad: &Joints) -> Joints {
     let mut freedom = Joints::repeat(1.0);
     for joint in 0..JOINTS {

@@ -2,7 +2,7 @@
 //!
 //! Positions in m, angles in rad, in `world`. The permitted space is a cone about a direction into the body, between a
 //! smallest and a largest insertion. [`Rcm::resolve`] refuses a tip outside it; [`Rcm::confine`] returns the nearest
-//! permitted shaft instead and says what it changed, for the loop, which must always have a result.
+//! permitted shaft instead and reports what it changed, for the loop, which always needs a result.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -12,46 +12,30 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RcmSettings {
-    /// Trocar point, which does not move, m (`world`).
+    /// Trocar point, fixed in space, m (`world`).
     pub trocar_m: Vector3<f64>,
-    /// Axis of the cone, pointing into the body (`world`); any length but zero.
+    /// Axis of the cone, pointing into the body (`world`); any length except zero.
     pub inward: Vector3<f64>,
     /// Half opening angle of the cone, degrees, above 0 and at most 80.
     pub cone_deg: f64,
     /// Smallest insertion of the tip beyond the trocar, m, at least 0.005: closer to the trocar, small motions of the
     /// hand would need unbounded rotations of the shaft.
     pub insertion_min_m: f64,
-    /// Largest insertion, m.
     pub insertion_max_m: f64,
 }
 
-/// Why a position or the settings are refused.
+/// Reason why a position or the settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RcmError {
-    /// A number is not finite.
-    #[error("{what} is not a finite number: give it in metres in the frame of the arm's base")]
+    #[error("{what} is not a finite number: enter it in metres in the frame of the arm's base")]
     NotFinite { what: &'static str },
-    /// Invalid settings.
     #[error("the trocar's {setting} is {value}: {wanted}")]
     Setting { setting: &'static str, value: f64, wanted: &'static str },
-    /// The tip is too close to the trocar, or outside the body.
-    #[error("the tip is {insertion_m:.4} m behind the trocar, at least {least_m} m are needed: push the instrument in")]
-    TooNear {
-        /// Distance of the tip from the trocar, m.
-        insertion_m: f64,
-        least_m: f64,
-    },
-    /// The tip is too deep.
-    #[error(
-        "the tip is {insertion_m:.4} m behind the trocar, at most {most_m} m are allowed: pull the instrument back"
-    )]
-    TooDeep {
-        /// Distance of the tip from the trocar, m.
-        insertion_m: f64,
-        most_m: f64,
-    },
-    /// The shaft is tilted outside the cone.
-    #[error("the shaft is tilted by {tilt_deg:.1} degrees, {cone_deg} are allowed: straighten it or widen the cone")]
+    #[error("the tip is {insertion_m:.4} m beyond the trocar (minimum {least_m} m): push the instrument in")]
+    TooNear { insertion_m: f64, least_m: f64 },
+    #[error("the tip is {insertion_m:.4} m beyond the trocar (limit {most_m} m): pull the instrument back")]
+    TooDeep { insertion_m: f64, most_m: f64 },
+    #[error("the shaft is tilted by {tilt_deg:.1} degrees (limit {cone_deg} degrees): straighten it or widen the cone")]
     OutsideCone {
         /// Angle from the axis of the cone, degrees.
         tilt_deg: f64,
@@ -60,7 +44,6 @@ pub enum RcmError {
     },
 }
 
-/// A shaft through the trocar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaft {
     /// Direction from the trocar to the tip, unit length.
@@ -69,25 +52,20 @@ pub struct Shaft {
     pub insertion_m: f64,
 }
 
-/// What [`Rcm::confine`] changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Confined {
-    /// The target was too close to the trocar.
     pub too_near: bool,
-    /// The target was beyond the largest insertion.
     pub too_deep: bool,
-    /// The target was outside the cone.
     pub outside_cone: bool,
 }
 
 impl Confined {
-    /// Whether nothing was changed.
     pub const fn is_untouched(self) -> bool {
         !self.too_near && !self.too_deep && !self.outside_cone
     }
 }
 
-/// The trocar with checked settings.
+/// A trocar with checked settings.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -120,13 +98,13 @@ pub struct Rcm {
 const POINT_M: f64 = 1e-9;
 
 impl Rcm {
-    /// Checks the settings.
+    /// Creates a trocar from checked settings.
     ///
     /// # Errors
     /// [`RcmError`] if a number is not finite or no space is left.
     pub fn new(settings: &RcmSettings) -> Result<Self, RcmError> {
         let RcmSettings { trocar_m, inward, cone_deg, insertion_min_m, insertion_max_m } = *settings;
-        for (what, vector) in [("the trocar's place", trocar_m), ("the direction into the body", inward)] {
+        for (what, vector) in [("the trocar's position", trocar_m), ("the direction into the body", inward)] {
             if !vector.iter().all(|x| x.is_finite()) {
                 return Err(RcmError::NotFinite { what });
             }
@@ -148,28 +126,27 @@ impl Rcm {
         Ok(Self { settings: *settings, inward: inward.normalize(), cone_rad: cone_deg.to_radians() })
     }
 
-    /// The settings.
     pub const fn settings(&self) -> &RcmSettings {
         &self.settings
     }
 
-    /// Axis of the cone, unit length.
+    /// Returns the axis of the cone, unit length.
     pub const fn inward(&self) -> &Vector3<f64> {
         &self.inward
     }
 
-    /// Position of the tip of a shaft, m.
+    /// Returns the position of the tip of a shaft, m.
     pub fn tip_m(&self, shaft: &Shaft) -> Vector3<f64> {
         self.settings.trocar_m + shaft.direction * shaft.insertion_m
     }
 
-    /// The shaft that leads through the trocar to this tip (m).
+    /// Returns the shaft that passes through the trocar to this tip (m).
     ///
     /// # Errors
     /// [`RcmError`] if the tip is not finite, too close, too deep, or outside the cone.
     pub fn resolve(&self, tip_m: &Vector3<f64>) -> Result<Shaft, RcmError> {
         if !tip_m.iter().all(|x| x.is_finite()) {
-            return Err(RcmError::NotFinite { what: "the tip's place" });
+            return Err(RcmError::NotFinite { what: "the tip's position" });
         }
         let RcmSettings { trocar_m, cone_deg, insertion_min_m, insertion_max_m, .. } = self.settings;
         let way_m = tip_m - trocar_m;
@@ -187,7 +164,7 @@ impl Rcm {
         Ok(Shaft { direction: way_m / insertion_m, insertion_m })
     }
 
-    /// The nearest permitted shaft to this tip (m, finite), and what had to be changed.
+    /// Returns the permitted shaft nearest to this tip (m, finite), and what had to be changed.
     pub fn confine(&self, tip_m: &Vector3<f64>) -> (Shaft, Confined) {
         let RcmSettings { trocar_m, insertion_min_m, insertion_max_m, .. } = self.settings;
         let way_m = tip_m - trocar_m;
@@ -209,7 +186,7 @@ impl Rcm {
         (Shaft { direction, insertion_m: wanted_m.clamp(insertion_min_m, insertion_max_m) }, confined)
     }
 
-    /// The direction on the cone's surface on the same side as `way_m`, unit length.
+    /// Returns the direction on the cone's surface on the same side as `way_m`, unit length.
     fn on_the_cone(&self, way_m: &Vector3<f64>) -> Vector3<f64> {
         let sideways = way_m - self.inward * way_m.dot(&self.inward);
         let side = if sideways.norm() > POINT_M {
@@ -224,7 +201,7 @@ impl Rcm {
     }
 }
 
-/// Angle between two directions of any length, rad; accurate for small angles.
+/// Returns the angle between two directions of any length, rad; accurate for small angles.
 pub(super) fn angle_rad(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
 }

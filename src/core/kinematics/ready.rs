@@ -1,9 +1,9 @@
-//! Searches a good starting pose: from many random starts, tested over the whole permitted space. Slow (a second or
-//! so), so not for the loop.
+//! Searches a good starting pose from many random starts and tests it over the whole permitted space. The search takes
+//! about a second, so it must not run in the loop.
 //!
-//! Takes the arm, the trocar, and the position of the tip (m, `world`). Returns joint angles (rad) and the share of the
-//! permitted space that the arm can reach from there while engaged; or why the position cannot be reached.
-//! Deterministic.
+//! Takes the arm, the trocar and the position of the tip (m, `world`). Returns joint angles (rad) and the fraction of
+//! the permitted space that the arm can reach from there while engaged, or the reason why the position cannot be
+//! reached. Deterministic.
 
 use std::f64::consts::{PI, TAU};
 
@@ -24,68 +24,58 @@ use super::{
 const STARTS: usize = 600;
 /// Newton steps from each start.
 const STEPS: usize = 80;
-/// Number of poses that are tested.
+/// Number of poses that are tested over the permitted space, because each test moves the arm over the whole space,
+/// which takes most of the time.
 const CANDIDATES: usize = 8;
-/// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad).
+/// A pose below these values is not tested: distance from a joint limit (rad), dexterity (m/rad). Chosen.
 const LEAST_MARGIN_RAD: f64 = 0.1;
 /// See [`LEAST_MARGIN_RAD`].
 const LEAST_DEXTERITY: f64 = 0.05;
-/// Period of the test drives, s: longer than the loop's, still short enough to keep the shaft in the trocar.
+/// Period of the test motions, s: longer than the loop's period to save time, still short enough to keep the shaft in
+/// the trocar.
 const TRY_PERIOD_S: f64 = 0.004;
 /// Distance from the goal at which the tip has arrived, m.
 const ARRIVED_M: f64 = 1e-4;
-/// Time limit for one goal of the test, periods.
+/// Time limit for one goal of the test, periods: 6 s at [`TRY_PERIOD_S`], enough to cross the permitted space several
+/// times at the speed limit of the tip.
 const TRY_PERIODS: usize = 1500;
-/// Number of directions around the cone that are tested.
+/// Number of directions around the cone that are tested, so that the largest gap between two is 45 degrees.
 const AROUND: usize = 8;
 
-/// A starting pose.
 #[derive(Clone, Copy, Debug)]
 pub struct Ready {
     /// Joint angles, rad, each within half a turn of zero.
     pub joint_rad: Joints,
-    /// Share of the tested goals (edge and middle of the cone, at smallest and largest insertion) that can be reached
+    /// Fraction of the tested goals (edge and middle of the cone, at minimum and maximum insertion) that can be reached
     /// from here.
     pub reached: f64,
     /// Smallest distance of a joint from its limit during the test, rad.
     pub limit_margin_rad: f64,
-    /// Smallest dexterity during the test, m/rad.
     pub dexterity: f64,
     /// Smallest height of elbow and wrist above the trocar during the test, m.
     pub clearance_m: f64,
 }
 
-/// Why there is no pose for a position.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ReadyError {
-    /// The tip is outside the permitted space.
-    #[error("the instrument cannot be there")]
+    #[error("the position of the instrument is not permitted")]
     Place(#[source] RcmError),
-    /// Arm and trocar do not fit together.
-    #[error("the ready pose cannot be a start")]
+    #[error("the arm cannot start from the ready pose")]
     Start(#[source] StartError),
-    /// The sensor would be beyond the arm's reach.
     #[error(
-        "the flange would have to be {needed_m:.3} m from the arm's shoulder, it reaches {reach_m:.3} m: move the arm nearer"
+        "the flange is out of reach: {needed_m:.3} m from the arm's shoulder, the limit is {reach_m:.3} m; move the arm nearer"
     )]
-    TooFar {
-        /// Required reach, m.
-        needed_m: f64,
-        /// Reach of the arm, m.
-        reach_m: f64,
-    },
-    /// The search did not converge from any start.
+    TooFar { needed_m: f64, reach_m: f64 },
     #[error(
-        "no pose puts tip and shaft there (best miss {best_miss_m:.4} m in {starts} starts): the place is too near to the arm's base"
+        "no pose reaches this tip and shaft (best miss {best_miss_m:.4} m in {starts} starts): the trocar is too near to the arm's base; move the arm"
     )]
     NoPose {
         /// Smallest remaining error of tip and direction, m.
         best_miss_m: f64,
         starts: usize,
     },
-    /// Poses exist, but none is usable.
     #[error(
-        "of {found} poses found {at_limits} are at a joint's limit, {singular} nearly singular, {low} with elbow or wrist too low: \
+        "none of the {found} poses found is usable: {at_limits} at a joint limit, {singular} nearly singular, {low} with elbow or wrist too low; \
          move the arm or the trocar"
     )]
     Unusable {
@@ -99,7 +89,7 @@ pub enum ReadyError {
     },
 }
 
-/// Searches a pose with the shaft through the trocar and the tip at `tip_m`.
+/// Finds a pose with the shaft through the trocar and the tip at `tip_m`.
 ///
 /// # Errors
 /// [`ReadyError`] if the position is not permitted or out of reach, or every pose is at a limit, singular or too low.
@@ -117,18 +107,19 @@ pub fn find(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>) -> Result<Ready, ReadyEr
     best.ok_or(ReadyError::NoPose { best_miss_m: f64::INFINITY, starts: STARTS })
 }
 
-/// The reachable share counts first, then how easily it is reached.
+/// Returns the rank of a pose: first the reachable fraction, then how easily it is reached.
 fn worth(ready: &Ready) -> f64 {
     ready.reached + 0.1 * ease(ready.limit_margin_rad, ready.dexterity, ready.clearance_m)
 }
 
-/// How easily, 0 (not usable) to 1 (ample margins).
+/// Returns how easily the goals are reached, 0 (not usable) to 1 (ample margins).
 fn ease(limit_margin_rad: f64, dexterity: f64, clearance_m: f64) -> f64 {
     let shares = [limit_margin_rad / 0.5, dexterity / 0.2, clearance_m / (2.0 * posture::CLEARANCE_M)];
     shares.into_iter().fold(1.0, f64::min).max(0.0)
 }
 
-/// The flange lies on a circle about the shaft's axis (its rotation is free), which must come within the arm's reach.
+/// Checks that the flange can be reached: it lies on a circle about the shaft's axis (its rotation is free), part of
+/// which must be within the arm's reach.
 fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<(), ReadyError> {
     let shoulder_m = (arm.world_from_base() * Point3::new(0.0, 0.0, SHOULDER_M)).coords;
     let s1_from_flange = arm.flange_from_s1().inverse().translation.vector;
@@ -137,7 +128,6 @@ fn check_reach(arm: &Arm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<(), Rea
     if needed_m > REACH_M { Err(ReadyError::TooFar { needed_m, reach_m: REACH_M }) } else { Ok(()) }
 }
 
-/// The best few distinct poses, best first.
 fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Result<Vec<Joints>, ReadyError> {
     let mut random = fastrand::Rng::with_seed(0x6e33);
     let mut good: Vec<(f64, Joints)> = Vec::new();
@@ -184,8 +174,8 @@ fn candidates(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, shaft: &Shaft) -> Resu
     Ok(distinct)
 }
 
-/// Largest difference of a joint, taken on the shorter way round; without the last joint, which mainly rotates the
-/// shaft about its own axis.
+/// Returns the largest difference of a joint, measured the shorter way round, without the last joint, which mainly
+/// rotates the shaft about its own axis.
 fn apart_rad(a: &Joints, b: &Joints) -> f64 {
     (a - b).iter().take(JOINTS - 1).map(|difference| wrapped(*difference).abs()).fold(0.0, f64::max)
 }
@@ -215,7 +205,7 @@ fn dexterity(arm: &Arm, rcm: &Rcm, joint_rad: &Joints) -> f64 {
     task.solve(&Wish::default(), &posture::freedom(joint_rad)).map_or(0.0, |parts| parts.dexterity)
 }
 
-/// Lets a pose settle, then drives from it to goals all over the permitted space and back.
+/// Lets a pose settle, then moves from it to goals all over the permitted space and back.
 fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Result<Ready, StartError> {
     let mut settled = Inverse::new(*arm, *rcm, TRY_PERIOD_S, joint_rad)?;
     for _ in 0..TRY_PERIODS {
@@ -241,7 +231,7 @@ fn tried(arm: &Arm, rcm: &Rcm, tip_m: &Vector3<f64>, joint_rad: &Joints) -> Resu
     Ok(ready)
 }
 
-/// Drives to a goal; stores the worst values in `ready`. Returns whether it arrived.
+/// Moves to a goal and stores the worst values in `ready`. Returns whether it arrived.
 fn went(inverse: &mut Inverse, place_m: &Vector3<f64>, ready: &mut Ready) -> bool {
     for _ in 0..TRY_PERIODS {
         let Measures { tip_miss_m, limit_margin_rad, dexterity, .. } = inverse.step(place_m).measures;
@@ -255,7 +245,7 @@ fn went(inverse: &mut Inverse, place_m: &Vector3<f64>, ready: &mut Ready) -> boo
     false
 }
 
-/// Middle and edge of the cone, each at smallest and largest insertion, m.
+/// Returns the middle and the edge of the cone, each at minimum and maximum insertion, m.
 pub(super) fn trial_places(rcm: &Rcm) -> Vec<Vector3<f64>> {
     let settings = rcm.settings();
     let inward = *rcm.inward();

@@ -1,34 +1,21 @@
-//! Why the inverse kinematics cannot start from the arm's present position.
-
 use thiserror::Error;
 
 use super::gen3::{Joints, LIMIT_RAD};
 
-/// Why the arm cannot start from its present position.
+/// Reason why the inverse kinematics cannot start from the arm's current joint angles.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum StartError {
-    /// The loop's period is invalid.
-    #[error("the period of the inverse kinematics is {period_s} s: it must be above 0 and at most 0.02 s")]
+    #[error("the period of the inverse kinematics, {period_s} s, is out of range: use more than 0 and at most 0.02 s")]
     Period { period_s: f64 },
-    /// The instrument is shorter than the largest insertion.
-    #[error(
-        "the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct the one or the other"
-    )]
-    ShortShaft {
-        /// Distance from the sensor to the tip, m.
-        shaft_m: f64,
-        /// Largest insertion, m.
-        insertion_max_m: f64,
-    },
-    /// A joint angle is not finite.
-    #[error("joint {joint} of the arm reports no finite angle: check the arm's connection")]
+    #[error("the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct one of them")]
+    ShortShaft { shaft_m: f64, insertion_max_m: f64 },
+    #[error("joint {joint} of the arm reports a non-finite angle: check the arm's connection")]
     NotFinite {
         /// Counted from 1.
         joint: usize,
     },
-    /// A joint is at its limit.
     #[error(
-        "joint {joint} is at {angle_deg:.1} degrees, its limit is {limit_deg:.1}: move the arm off the limit by hand"
+        "joint {joint} is at {angle_deg:.1} degrees, beyond its limit of {limit_deg:.1} degrees: move the arm off the limit by hand"
     )]
     AtLimit {
         /// Counted from 1.
@@ -36,17 +23,13 @@ pub enum StartError {
         angle_deg: f64,
         limit_deg: f64,
     },
-    /// The shaft does not pass through the trocar.
-    #[error(
-        "the shaft's axis misses the trocar by {miss_m:.4} m, at most {most_m} m are allowed: move the arm to the ready pose"
-    )]
+    #[error("the shaft's axis misses the trocar by {miss_m:.4} m (limit {most_m} m): move the arm to the ready pose")]
     BesideTrocar {
         /// Distance of the axis from the trocar, m.
         miss_m: f64,
         most_m: f64,
     },
-    /// The tip is not inside the body.
-    #[error("the tip is {insertion_m:.4} m behind the trocar: insert the instrument before starting")]
+    #[error("the instrument is inserted {insertion_m:.4} m beyond the trocar: insert it into the body before starting")]
     NotInserted {
         /// Along the shaft, m; negative outside the body.
         insertion_m: f64,

@@ -15,7 +15,7 @@ use super::{
 
 const PERIOD_S: f64 = 1e-3;
 
-/// An arm at rest with its tip in the middle of the permitted space.
+/// Returns an arm at rest with its tip in the middle of the permitted space.
 fn started(cone_deg: f64) -> Inverse {
     let mut joint_rad = Joints::from(READY_RAD);
     // The stored angles are rounded; a few Newton steps remove the error of some millimetres.
@@ -29,7 +29,6 @@ fn started(cone_deg: f64) -> Inverse {
     inverse
 }
 
-/// Results of a random drive.
 #[derive(Debug)]
 struct Drive {
     axis_miss_m: f64,
@@ -42,7 +41,7 @@ struct Drive {
     step_us: [f64; 2],
 }
 
-/// Drives for `steps` periods like a hand, with jumps over the whole space, targets outside it, and NaN.
+/// Moves for `steps` periods like a hand, with jumps over the whole space, targets outside it, and NaN.
 fn drive(cone_deg: f64, steps: usize, seed: u64) -> Drive {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut inverse = started(cone_deg);

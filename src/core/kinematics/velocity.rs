@@ -29,7 +29,6 @@ const DAMPING: f64 = 0.02;
 /// Added to denominators to keep divisions finite; negligible otherwise.
 const TINY: f64 = 1e-12;
 
-/// Effect of the joint speeds on the shaft.
 #[derive(Clone, Copy)]
 pub(super) struct Task {
     /// Velocity of the shaft at the trocar along `Pose::across`, m/s per rad/s.
@@ -38,7 +37,6 @@ pub(super) struct Task {
     motion: Rows3,
 }
 
-/// Components of a joint step, rad.
 pub(super) struct Parts {
     /// Brings the axis back to the trocar.
     pub correction: Joints,
@@ -48,7 +46,7 @@ pub(super) struct Parts {
     pub carried: Joints,
     /// Continues as in the last period, without moving the axis at the trocar.
     pub coast: Joints,
-    /// Share of the correction that the last period's step already makes.
+    /// Fraction of the correction that the last period's step already makes.
     pub returning: f64,
     /// Improves the posture without affecting the other tasks.
     pub posture: Joints,
@@ -56,7 +54,6 @@ pub(super) struct Parts {
     pub dexterity: f64,
 }
 
-/// The motion wanted in a step.
 #[derive(Default)]
 pub(super) struct Wish {
     /// Displacement of the axis at the trocar along `Pose::across`, m.
@@ -65,7 +62,6 @@ pub(super) struct Wish {
     pub motion_m: Vector3<f64>,
     /// The same for the target's own motion in this period.
     pub carried_m: Vector3<f64>,
-    /// The joints' step in the last period, rad.
     pub moved_rad: Joints,
     /// Change of the joints that improves the posture, rad.
     pub posture_rad: Joints,
@@ -89,7 +85,7 @@ impl Task {
         Self { at_trocar, motion }
     }
 
-    /// Square of the product of the five singular values: Yoshikawa's manipulability (1985).
+    /// Returns the square of the product of the five singular values: Yoshikawa's manipulability (1985).
     pub(super) fn manipulability_squared(&self) -> f64 {
         let held = self.at_trocar * self.at_trocar.transpose();
         let cross = self.motion * self.at_trocar.transpose();
@@ -97,8 +93,8 @@ impl Task {
         held.determinant() * free.determinant()
     }
 
-    /// Solves for the joint step; `weight` (above 0, at most 1) says how freely each joint may be used. `None` if the
-    /// result cannot be computed.
+    /// Solves for the joint step; `weight` (above 0, at most 1) sets how freely each joint may be used. Returns `None`
+    /// if the result cannot be computed.
     pub(super) fn solve(&self, wish: &Wish, weight: &Joints) -> Option<Parts> {
         let root = weight.map(f64::sqrt);
         let mut trocar = self.at_trocar;
@@ -137,21 +133,22 @@ impl Task {
     }
 }
 
-/// `1 / (s^2 + l^2)` with the damping `l` growing from zero as the singular value `s` falls below [`DAMPED_BELOW`].
+/// Returns `1 / (s^2 + l^2)` with the damping `l` growing from zero as the singular value `s` falls below
+/// [`DAMPED_BELOW`].
 fn damped_inverse(square: f64) -> f64 {
     let share = (square.max(0.0) / (DAMPED_BELOW * DAMPED_BELOW)).min(1.0);
     1.0 / (square.max(0.0) + DAMPING * DAMPING * (1.0 - share) + TINY)
 }
 
-/// Inverse of a symmetric positive 2 x 2 matrix, finite even if it is singular.
+/// Returns the inverse of a symmetric positive 2 x 2 matrix, finite even if it is singular.
 fn inverse2(matrix: &Matrix2<f64>) -> Matrix2<f64> {
     let [a, b, d] = [matrix[(0, 0)] + TINY, matrix[(0, 1)], matrix[(1, 1)] + TINY];
     let determinant = (a * d - b * b).max(TINY * TINY);
     Matrix2::new(d, -b, -b, a) / determinant
 }
 
-/// Joint step (rad) towards a tip position and shaft direction by damped least squares, from any start; for the search
-/// of a pose, not for the loop.
+/// Returns the joint step (rad) towards a tip position and shaft direction by damped least squares, from any start; for
+/// the search of a pose, not for the loop.
 pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> (Joints, f64) {
     let mut rows = SMatrix::<f64, 5, JOINTS>::zeros();
     let mut miss_m = SMatrix::<f64, 5, 1>::zeros();
@@ -172,7 +169,7 @@ pub(super) fn towards(pose: &Pose, tip_m: &Vector3<f64>, direction: &Vector3<f64
     (step, miss_m.norm())
 }
 
-/// Rotation from the shaft's direction to another one, along `Pose::across`, rad.
+/// Returns the rotation from the shaft's direction to another one, along `Pose::across`, rad.
 pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64> {
     let [x, y] = pose.across.map(|across| across.dot(direction));
     let sideways = libm::hypot(x, y);
@@ -180,7 +177,7 @@ pub(super) fn turn_towards(pose: &Pose, direction: &Vector3<f64>) -> Vector2<f64
     if sideways > TINY {
         Vector2::new(x, y) * (angle_rad / sideways)
     } else {
-        // In the same direction there is no rotation; in the opposite direction any axis will do.
+        // Parallel directions need no rotation; for opposite directions any axis will do.
         Vector2::new(angle_rad, 0.0)
     }
 }

@@ -8,7 +8,6 @@ pub const PITCH_MAX_RAD: f64 = 1.3;
 /// Angles of the instrument's wrist, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jaws {
-    /// Rotation about the shaft.
     pub roll_rad: f64,
     /// Rotation across the shaft.
     pub pitch_rad: f64,
@@ -17,14 +16,13 @@ pub struct Jaws {
 }
 
 impl Jaws {
-    /// Orientation of the jaws.
     pub fn s1_from_jaws(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.roll_rad)
             * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), self.pitch_rad)
             * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), self.yaw_rad)
     }
 
-    /// The angles for an orientation, each within half a turn of those of `near`, with pitch limited to
+    /// Returns the angles for an orientation, each within half a turn of the angles of `near`, with pitch limited to
     /// [`PITCH_MAX_RAD`].
     pub fn of(s1_from_jaws: &UnitQuaternion<f64>, near: &Self) -> Self {
         let r: Rotation3<f64> = s1_from_jaws.to_rotation_matrix();
@@ -39,7 +37,7 @@ impl Jaws {
     }
 }
 
-/// The equivalent angle that is nearest to `near_rad`.
+/// Returns the equivalent angle that is nearest to `near_rad`.
 fn nearest(angle_rad: f64, near_rad: f64) -> f64 {
     angle_rad + std::f64::consts::TAU * ((near_rad - angle_rad) / std::f64::consts::TAU).round()
 }

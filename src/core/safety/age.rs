@@ -1,8 +1,8 @@
-//! Second gate: old data fade. A source that falls silent takes its force with it.
+//! Second gate: the force fades with the age of its data. A silent source loses its force.
 
 use super::Reason;
 
-/// Fades a force between two ages of the data behind it, beyond the link's own delay.
+/// Fades a force between two ages of its data, beyond the link's own delay.
 #[derive(Clone, Copy, Debug)]
 pub struct Age {
     fade_after_s: f64,
@@ -10,12 +10,13 @@ pub struct Age {
 }
 
 impl Age {
-    /// Whole until `fade_after_s`, nothing from `zero_after_s` on (s, the second above the first).
+    /// Full force until `fade_after_s`, none from `zero_after_s` on (s, the second above the first).
     pub const fn new(fade_after_s: f64, zero_after_s: f64) -> Self {
         Self { fade_after_s, zero_after_s }
     }
 
-    /// Share of the force that passes at this age (s), 0 to 1, and why not all. An age that is not finite passes nothing.
+    /// Returns the fraction of the force that passes at this age (s), 0 to 1, and why it is reduced. A non-finite age
+    /// passes nothing.
     pub fn share(&self, age_s: f64) -> (f64, Reason) {
         if !age_s.is_finite() || age_s >= self.zero_after_s {
             return (0.0, Reason::TooOld);

@@ -1,10 +1,10 @@
-//! Seventh gate: the largest force that ever reaches the hand, never above what the device can give.
+//! Seventh gate: the maximum force at the hand, never above the device's own limit.
 
 use nalgebra::SVector;
 
 use super::Reason;
 
-/// The two limits.
+/// Limits a force to the ceiling and to the device's own limit.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -21,17 +21,16 @@ pub struct Ceiling {
 }
 
 impl Ceiling {
-    /// At most the lesser of the two (N, norm of the vector).
+    /// Uses the lower of the two limits (N, norm of the vector).
     pub const fn new(ceiling_n: f64, device_limit_n: f64) -> Self {
         Self { ceiling_n, device_limit_n }
     }
 
-    /// The limit in force, N.
     pub const fn most_n(&self) -> f64 {
         self.ceiling_n.min(self.device_limit_n)
     }
 
-    /// `force_n` (N), shortened to the limit along its own direction, and why.
+    /// Returns `force_n` (N), shortened to the limit along its own direction, and why.
     pub fn under<const D: usize>(&self, force_n: SVector<f64, D>) -> (SVector<f64, D>, Reason) {
         let norm = force_n.norm();
         let most_n = self.most_n();

@@ -1,6 +1,7 @@
 //! The gates in their fixed order: permission, validity, age, dead band, gain, slew, energy, ceiling, governor.
 //!
-//! One chain for a force in space, one for a torque, one for a gripper: the same gates, of as many axes as are asked for.
+//! The same gates, with the required number of axes, serve a force in space, a torque and a gripper force: one chain
+//! each.
 
 use nalgebra::SVector;
 
@@ -10,23 +11,22 @@ use super::{
 };
 use crate::limits::DEAD_BAND_M_S;
 
-/// One force asking to reach the hand. [`Request::default`] is one that is not permitted.
+/// A force that is to reach the hand. [`Request::default`] is not permitted.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<const D: usize = 3> {
-    /// When it is asked, s: the time of the tick.
     pub t_s: f64,
-    /// The force a mode asks for, N; `None` when the mode has nothing valid.
+    /// The force that a mode requests, N; `None` if the mode has no valid force.
     pub force_n: Option<SVector<f64, D>>,
-    /// Age of the newest data behind it beyond the link's own delay, s.
+    /// Age of its newest data beyond the link's own delay, s.
     pub age_s: f64,
-    /// Speed of the hand, m/s.
     pub speed_m_s: f64,
-    /// Where the handle is, m, on the axes of the force, as the device reads it (not scaled); `None`: not known, then the energy
-    /// gate sees no motion. A place and not a velocity, because force times way is the energy exactly.
+    /// Position of the handle, m, on the axes of the force, as the device reports it (not scaled); `None` if unknown:
+    /// the energy gate then assumes no motion. A position instead of a velocity, because force times travel is exactly
+    /// the energy.
     pub hand_m: Option<SVector<f64, D>>,
-    /// How long before `t_s` the handle was read, s.
+    /// Age of the handle's reading at `t_s`, s.
     pub hand_age_s: f64,
-    /// The state machine allows force at all.
+    /// Whether the state machine permits force at all.
     pub permitted: bool,
 }
 
@@ -44,7 +44,7 @@ impl<const D: usize> Default for Request<D> {
     }
 }
 
-/// The chain and its memory (gain ramp, last force, dead band, energy, counters).
+/// The chain and its state (gain ramp, last force, dead band, energy, counters).
 #[derive(Clone, Debug)]
 pub struct Chain<const D: usize = 3> {
     settings: ChainSettings,
@@ -56,20 +56,18 @@ pub struct Chain<const D: usize = 3> {
     energy: Energy<D>,
     ceiling: Ceiling,
     governor: Governor<D>,
-    /// Time of the last request, s.
     last_s: Option<f64>,
-    /// The force that reached the hand last, N. The slew limit's own last force is the one before the governor.
+    /// The last force that reached the hand, N. The slew limit stores its own last force, before the governor.
     applied_n: SVector<f64, D>,
     counts: GateCounts,
 }
 
-/// The chain of a gripper's force.
 pub type GripperChain = Chain<1>;
-/// The chain of a torque.
 pub type TorqueChain = Chain<3>;
 
 impl<const D: usize> Chain<D> {
-    /// A chain for a loop of this nominal period (s). Settings outside their ranges are pulled into them, the gain to 1 at most.
+    /// Creates a chain for a loop of this nominal period (s). Settings outside their ranges are clamped, the gain to at
+    /// most 1.
     pub fn new(settings: ChainSettings, period_s: f64) -> Self {
         let mut settings = settings.pulled_in();
         let gain = Gain::new(settings.gain, settings.gain_rate_per_s);
@@ -90,35 +88,34 @@ impl<const D: usize> Chain<D> {
         }
     }
 
-    /// Settings in force.
     pub const fn settings(&self) -> &ChainSettings {
         &self.settings
     }
 
-    /// Counters since construction.
     pub const fn counts(&self) -> &GateCounts {
         &self.counts
     }
 
-    /// The largest force that can leave, N.
+    /// Returns the maximum force that the chain can pass, N.
     pub const fn most_n(&self) -> f64 {
         self.ceiling.most_n()
     }
 
-    /// Chooses the gain to ramp to, 0 to 1; more is pulled down to 1 unless [`Chain::set_gain_above_one`] came before and no
-    /// choice of 1 or less since. NaN is ignored.
+    /// Sets the gain to ramp to, 0 to 1. A larger gain is clamped to 1, unless [`Chain::set_gain_above_one`] was called
+    /// since the last gain of 1 or less. NaN is ignored.
     pub const fn set_ordinary_gain(&mut self, gain: f64) {
         self.gain.choose(gain);
         self.settings.gain = self.gain.chosen();
     }
 
-    /// The second, deliberate action: chooses a gain within [`GAIN_ABOVE_ONE`](crate::limits::GAIN_ABOVE_ONE). NaN is ignored.
+    /// Sets a gain within [`GAIN_ABOVE_ONE`](crate::limits::GAIN_ABOVE_ONE): the operator's second, deliberate action.
+    /// NaN is ignored.
     pub const fn set_gain_above_one(&mut self, gain: f64) {
         self.gain.choose_above_one(gain);
         self.settings.gain = self.gain.chosen();
     }
 
-    /// Chooses the dead band, m/s, 0 to 0.1; anything else is pulled in, NaN is ignored.
+    /// Sets the dead band, m/s, clamped to 0 to 0.1; NaN is ignored.
     pub fn set_dead_band(&mut self, threshold_m_s: f64) {
         if !threshold_m_s.is_nan() {
             self.settings.dead_band_m_s = threshold_m_s.clamp(DEAD_BAND_M_S.min, DEAD_BAND_M_S.max);
@@ -131,13 +128,14 @@ impl<const D: usize> Chain<D> {
         self.settings.static_hold = hold;
     }
 
-    /// Leaves the governor out (false) or lets it watch again (true). For simulated handles only.
+    /// Switches the governor off or on. Off is for simulated handles only.
     pub fn set_governor(&mut self, on: bool) {
         self.settings.handle_kg = if on { self.governor.handle().mass_kg } else { 0.0 };
         self.governor.watch(on);
     }
 
-    /// Forgets the last force, so that the next one starts from zero, and the hand's motion; the hand is taken to be there.
+    /// Resets the last force, so that the next force starts from zero, and the hand's motion; a hand is assumed to hold
+    /// the handle.
     pub fn reset(&mut self) {
         self.slew.left(SVector::zeros());
         self.energy.reset();
@@ -145,7 +143,8 @@ impl<const D: usize> Chain<D> {
         self.applied_n = SVector::zeros();
     }
 
-    /// Sends one request through all gates; returns the force for the hand (N) and what each gate did. Call once a tick.
+    /// Sends one request through all gates; returns the force for the hand (N) and the action of each gate. Call once
+    /// per tick.
     ///
     /// ```
     /// use nalgebra::Vector3;
@@ -167,7 +166,7 @@ impl<const D: usize> Chain<D> {
     ///     assert!(force_n.norm() <= 2.0 + 1e-9, "the ceiling holds");
     /// }
     ///
-    /// // What is no number closes the chain and names the gate.
+    /// // NaN closes the chain and names the gate.
     /// request.force_n = Some(Vector3::new(f64::NAN, 0.0, 0.0));
     /// let (_, report) = chain.step(&request);
     /// assert_eq!(report.first().map(|(gate, _)| gate), Some(Gate::Validity));
@@ -186,7 +185,7 @@ impl<const D: usize> Chain<D> {
         (self.applied_n, report)
     }
 
-    /// Time since the last request, s: a period for the first one, none if the clock did not advance.
+    /// Returns the time since the last request, s: one period for the first request, zero if the clock did not advance.
     fn since_last_s(&mut self, t_s: f64) -> f64 {
         if !t_s.is_finite() {
             return 0.0;
@@ -210,7 +209,7 @@ impl<const D: usize> Chain<D> {
             return SVector::zeros();
         }
         let limited_n = if report.acted(Gate::Validity) {
-            // A stop is a stop: no ramp down, the slew limit does not apply to letting go.
+            // A stop takes effect at once: the slew limit does not apply to a release.
             SVector::zeros()
         } else {
             self.limited(moving_n * gain, dt_s, report)
@@ -223,14 +222,15 @@ impl<const D: usize> Chain<D> {
         governed.force_n
     }
 
-    /// Slew, energy, ceiling.
+    /// Applies slew limit, energy gate and ceiling.
     fn limited(&self, force_n: SVector<f64, D>, dt_s: f64, report: &mut GateReport) -> SVector<f64, D> {
         let (slewed_n, slew) = self.slew.limited(force_n, dt_s);
         report.note(Gate::Slew, slew);
         let (paid_n, energy) = self.energy.controlled(slewed_n);
         report.note(Gate::Energy, energy);
-        // What the energy gate takes goes as fast as a force may change, no faster. The ceiling shortens towards a ball in which
-        // the last force lies, which brings no two forces further apart: the slew limit holds behind it.
+        // The force that the energy gate removes decreases as fast as the slew limit allows, no faster. The ceiling
+        // shortens towards a ball that contains the last force, which never moves two forces further apart: the slew
+        // limit still holds after it.
         let (force_n, ceiling) = self.ceiling.under(self.slew.limited(paid_n, dt_s).0);
         report.note(Gate::Ceiling, ceiling);
         force_n
@@ -264,7 +264,7 @@ mod tests {
         Request { force_n: Some(force_n), age_s: 0.0, speed_m_s: 0.1, permitted: true, ..Request::default() }
     }
 
-    /// A chain on a clock that goes on by a period with each request.
+    /// A chain whose clock advances by one period with each request.
     struct Clocked<const D: usize>(Chain<D>, f64);
 
     impl<const D: usize> Clocked<D> {

@@ -1,32 +1,34 @@
-//! Third gate: the paper's rule that nothing is rendered below 1 mm/s, with a smooth edge and hysteresis so that it does not chatter.
+//! Third gate: the paper's rule that no force is rendered below 1 mm/s, with a smooth edge and hysteresis to prevent
+//! chatter.
 
-/// Time in which the speed that counts falls, s.
+/// Time constant with which the effective speed falls, s. Chosen.
 const FALL_S: f64 = 0.040;
-/// Times the threshold: a faster hand that stops takes no longer to close the gate, 0.1 s.
+/// Upper limit of the effective speed, in thresholds: even a fast hand that stops closes the gate within 0.1 s.
 const FAST: f64 = 8.0;
 
-/// Speed gate: 0 below the threshold, 1 above twice the threshold, smooth between, without a step anywhere.
+/// Speed gate: 0 below the threshold, 1 above twice the threshold, smooth in between.
 ///
-/// Hysteresis is that of a loose gear (play): a rising speed counts as it is, a falling one counts up to half a threshold
-/// higher, and falls slowly. So the gate begins to open at the threshold and is shut again only below half of it.
+/// The hysteresis works like the play of a loose gear: a rising speed counts unchanged; a falling speed counts as up to
+/// half a threshold higher, and falls slowly. The gate therefore begins to open at the threshold and closes again only
+/// below half of it.
 #[derive(Clone, Copy, Debug)]
 pub struct DeadBand {
-    /// Speed at which the gate begins to open, m/s (the paper's 1 mm/s). Zero means always open.
+    /// Speed at which the gate begins to open, m/s (the paper's 1 mm/s). At zero the gate is always open.
     pub threshold_m_s: f64,
-    /// Speed lately, m/s: it rises at once and falls slowly, so that a trembling hand does not switch its force twenty times a second.
+    /// Recent speed, m/s: it rises at once and falls slowly, so that a trembling hand does not switch its force twenty
+    /// times a second.
     lately_m_s: f64,
-    /// The speed that counts, m/s.
     counted_m_s: f64,
 }
 
 impl DeadBand {
-    /// A closed gate with this threshold (m/s).
+    /// Creates a closed gate with this threshold (m/s).
     pub const fn new(threshold_m_s: f64) -> Self {
         Self { threshold_m_s, lately_m_s: 0.0, counted_m_s: 0.0 }
     }
 
-    /// Fraction of the force that passes at this speed (m/s), `dt_s` (s) after the last call, 0 to 1. A speed that is not a number
-    /// closes the gate.
+    /// Returns the fraction of the force that passes at this speed (m/s), `dt_s` (s) after the last call, 0 to 1. A NaN
+    /// speed closes the gate.
     pub fn step(&mut self, speed_m_s: f64, dt_s: f64) -> f64 {
         if self.threshold_m_s <= 0.0 {
             return 1.0;
@@ -51,7 +53,7 @@ mod tests {
 
     use super::*;
 
-    /// Share that passes once a hand has gone at this speed for half a second.
+    /// Returns the fraction that passes after a hand has moved at this speed for half a second.
     fn settled(gate: &mut DeadBand, speed_m_s: f64) -> f64 {
         (0..500).map(|_| gate.step(speed_m_s, 1e-3)).last().unwrap()
     }

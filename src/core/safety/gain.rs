@@ -1,27 +1,27 @@
-//! Fourth gate: the operator's factor, ramped, above 1 only by a second, deliberate action.
+//! Fourth gate: the operator's gain, ramped; a gain above 1 needs a second, deliberate action.
 
 use super::Reason;
 use crate::limits::{GAIN, GAIN_ABOVE_ONE};
 
-/// The gain and its ramp.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {
     chosen: f64,
-    /// The operator took the second action; withdrawn by any choice of 1 or less.
+    /// Whether the operator took the second action; cleared by any gain of 1 or less.
     above_one: bool,
     now: f64,
     rate_per_s: f64,
 }
 
 impl Gain {
-    /// Starts at this gain (at most 1: nobody has taken the second action yet), changing by at most `rate_per_s` (1/s).
+    /// Starts at this gain (at most 1, because the second action is still missing), which changes by at most
+    /// `rate_per_s` (1/s).
     pub const fn new(gain: f64, rate_per_s: f64) -> Self {
         let chosen = if gain.is_nan() { 0.0 } else { gain.clamp(GAIN.min, GAIN.max) };
         Self { chosen, above_one: false, now: chosen, rate_per_s }
     }
 
-    /// Chooses a gain of 0 to 1; more is pulled down to 1, or kept where the second action already allowed more than 1. NaN is
-    /// ignored. A choice of 1 or less withdraws that permission.
+    /// Sets a gain of 0 to 1. A larger gain is clamped to 1, unless the second action has already permitted
+    /// more than 1. NaN is ignored. A gain of 1 or less withdraws that permission.
     pub const fn choose(&mut self, gain: f64) {
         if gain.is_nan() {
             return;
@@ -30,7 +30,7 @@ impl Gain {
         self.chosen = gain.clamp(GAIN.min, if self.above_one { GAIN_ABOVE_ONE.max } else { GAIN.max });
     }
 
-    /// The second, deliberate action: chooses a gain within [`GAIN_ABOVE_ONE`]. NaN is ignored.
+    /// Sets a gain within [`GAIN_ABOVE_ONE`]: the second, deliberate action. NaN is ignored.
     pub const fn choose_above_one(&mut self, gain: f64) {
         if !gain.is_nan() {
             self.above_one = gain > 1.0;
@@ -38,12 +38,13 @@ impl Gain {
         }
     }
 
-    /// The gain chosen; [`Gain::step`] is on its way there.
+    /// Returns the gain that was set; [`Gain::step`] ramps towards it.
     pub const fn chosen(&self) -> f64 {
         self.chosen
     }
 
-    /// The active gain `dt_s` (s) after the last call, and why it is not the chosen one, or passes nothing.
+    /// Returns the active gain `dt_s` (s) after the last call, and why it differs from the one that was set, or passes
+    /// no force.
     pub fn step(&mut self, dt_s: f64) -> (f64, Reason) {
         let step = self.rate_per_s * dt_s;
         self.now += (self.chosen - self.now).clamp(-step, step);

@@ -1,50 +1,48 @@
-//! The interlock: one explicit state machine per arm pair, which alone permits force and motion.
+//! The interlock: one explicit state machine per arm pair. Only this machine permits force and motion.
 //!
-//! In: what the operator wants ([`Wish`]), what is seen of the machine ([`Seen`]), faults. Out: the [`State`], what it permits
-//! ([`Permits`]) and every [`Change`] with its reason. Time (s) is handed in. Which states follow which is written in types: each state is a value
-//! with methods for its legal successors only, so that an illegal transition does not compile.
+//! In: the operator's requests ([`Wish`]), observations of the machine ([`Seen`]), faults. Out: the [`State`], its
+//! permissions ([`Permits`]) and every [`Change`] with its reason. Time (s) is an argument. The types encode the legal
+//! transitions: each state is a value with methods for its legal successors only, so that an illegal transition does
+//! not compile.
 //!
 //! ```text
 //! Disconnected ⇄ Idle → Ready → Engaged ⇄ Clutched        from everywhere: Stopped
 //!                  ↑______|________|__________|           from Idle on:    Faulted
 //!                  └── release ── Stopped, Faulted
 //! ```
-//! Nothing resumes by itself: a device that comes back leads to `Idle`, whatever was wanted before; out of a stop or a fault it
-//! takes a release and a new engagement. The clutch is the exception that the operator's own foot makes.
+//! Nothing resumes by itself: a device that returns leads to `Idle`, regardless of earlier requests; leaving a stop or
+//! a fault requires a release and a new engagement. The clutch is the only exception, because the operator's own foot
+//! controls it.
 
-/// How long drives may take to obey, s, before `Ready` gives up.
+/// Maximum time for the drives to respond, s, before `Ready` gives up. Chosen.
 pub const READY_WITHIN_S: f64 = 2.0;
 
-/// Where an arm pair is; `F` is the cause of a fault.
+/// State of an arm pair; `F` is the cause of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State<F> {
-    /// A device of the force path is not there.
+    /// A device of the force path is missing.
     Disconnected,
-    /// Everything delivers. Drives off.
+    /// All devices deliver data. Drives off.
     Idle,
     /// Drives on, at rest and without force, until hand and tip agree.
     Ready,
     /// Following and rendering.
     Engaged,
-    /// The hand moves freely, the follower rests, no force.
+    /// The hand moves freely, the follower is at rest, without force.
     Clutched,
-    /// Stopped by the operator; latched.
     Stopped,
     /// Stopped by a fault; latched.
     Faulted(F),
 }
 
-/// What a state permits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Permits {
-    /// Drives and motors may be on.
     pub drives: bool,
     /// The follower may move, the hand may feel force.
     pub coupled: bool,
 }
 
 impl<F: Copy> State<F> {
-    /// What is permitted here.
     pub const fn permits(self) -> Permits {
         Permits {
             drives: matches!(self, Self::Ready | Self::Engaged | Self::Clutched),
@@ -52,12 +50,12 @@ impl<F: Copy> State<F> {
         }
     }
 
-    /// Nobody gets out of here without a release.
+    /// Returns whether leaving this state requires a release.
     pub const fn is_latched(self) -> bool {
         matches!(self, Self::Stopped | Self::Faulted(_))
     }
 
-    /// One word for the screen.
+    /// Returns the word for the screen.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Disconnected => "No device",
@@ -71,55 +69,43 @@ impl<F: Copy> State<F> {
     }
 }
 
-/// What is seen of the machine in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
 pub struct Seen {
-    /// Every device of the force path delivers.
     pub connected: bool,
     pub powered: bool,
     /// Hand and tip agree, and the force at the tip is known.
     pub agreed: bool,
-    /// Somebody holds the handle; true where nothing can tell.
+    /// A hand holds the handle; true if that cannot be detected.
     pub present: bool,
     pub clutch: bool,
 }
 
-/// What the operator wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
-    /// Motion and force.
     Engage,
-    /// No more of them, without a latch.
+    /// End motion and force, without a latch.
     Rest,
-    /// The safe state, latched.
+    /// Enter the safe state, latched.
     Stop,
-    /// Out of the latch.
+    /// Leave the latch.
     Release,
 }
 
-/// Why a state changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Why {
-    /// The operator asked for it.
     Asked,
-    /// The devices came.
     Connected,
-    /// A device went.
     Disconnected,
-    /// Drives obey, and hand and tip agree.
+    /// The drives respond, and hand and tip agree.
     Agreed,
-    /// The clutch was pressed or released.
     Clutch,
-    /// The drives did not obey in time.
     Late,
-    /// Nobody holds the handle.
     Absent,
     /// A check or a device failed; the new state names the cause.
     Fault,
 }
 
-/// One change of state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Change<F> {
     pub from: State<F>,
@@ -129,7 +115,6 @@ pub struct Change<F> {
 
 /// States as values with methods for their legal successors.
 mod legal {
-    /// A state and its legal successors.
     macro_rules! state {
         ($name:ident $(, $method:ident => $next:ident)*) => {
             #[derive(Clone, Copy, Debug)]
@@ -147,7 +132,7 @@ mod legal {
     state!(Stopped, release => Idle);
     state!(Faulted, release => Idle);
 
-    /// The only state that a machine begins in.
+    /// The initial state, and the only one that can be constructed.
     pub(super) const BEGIN: Idle = Idle(());
 }
 
@@ -162,7 +147,7 @@ enum At<F> {
     Faulted(legal::Faulted, F),
 }
 
-/// The machine.
+/// The state machine of one arm pair.
 ///
 /// ```
 /// use nima_core::safety::{Interlock, Seen, State, Wish};
@@ -194,7 +179,6 @@ impl<F: Copy> Default for Interlock<F> {
 }
 
 impl<F: Copy> Interlock<F> {
-    /// Where it is.
     pub const fn state(&self) -> State<F> {
         match self.at {
             At::Disconnected(_) => State::Disconnected,
@@ -213,10 +197,10 @@ impl<F: Copy> Interlock<F> {
         Change { from, to: self.state(), why }
     }
 
-    /// Does what the operator wants, as far as this state allows; `Err` when it does not.
+    /// Carries out a request, if this state allows it.
     ///
     /// # Errors
-    /// [`Refused`] where the state does not allow the wish.
+    /// [`Refused`] if the state does not allow the request.
     pub fn ask(&mut self, wish: Wish, now_s: f64) -> Result<Option<Change<F>>, Refused> {
         let next = match (wish, self.at) {
             // The safe state is reachable from everywhere; a fault stays visible under a stop's latch.
@@ -240,7 +224,7 @@ impl<F: Copy> Interlock<F> {
         Ok(Some(self.go(next, Why::Asked)))
     }
 
-    /// Takes a fault in. The first one is kept; a stop stays a stop.
+    /// Reports a fault. The first fault is kept; a stop remains a stop.
     pub const fn fail(&mut self, fault: F) -> Option<Change<F>> {
         let next = match self.at {
             At::Idle(at) => at.fail(),
@@ -252,10 +236,10 @@ impl<F: Copy> Interlock<F> {
         Some(self.go(At::Faulted(next, fault), Why::Fault))
     }
 
-    /// Looks at the machine once a tick.
+    /// Evaluates the observations of a tick.
     ///
-    /// A device that goes while engaged is a fault, which the caller raises with its cause by [`Interlock::fail`]; drives that no
-    /// longer obey too.
+    /// The loss of a device while engaged is a fault that the caller reports with its cause by [`Interlock::fail`]; so
+    /// are drives that no longer respond.
     pub fn step(&mut self, seen: &Seen, now_s: f64) -> Option<Change<F>> {
         let in_time = now_s <= self.ready_until_s;
         let (next, why) = match self.at {
@@ -265,7 +249,7 @@ impl<F: Copy> Interlock<F> {
             At::Ready(at) if seen.powered && seen.agreed && seen.present && !seen.clutch => {
                 (At::Engaged(at.engage()), Why::Agreed)
             }
-            // A time that is no number is not in time.
+            // NaN is not in time.
             At::Ready(at) if !in_time => (At::Idle(at.rest()), Why::Late),
             At::Engaged(at) if !seen.present => (At::Idle(at.rest()), Why::Absent),
             At::Engaged(at) if seen.clutch => (At::Clutched(at.clutch()), Why::Clutch),
@@ -279,7 +263,6 @@ impl<F: Copy> Interlock<F> {
     }
 }
 
-/// The wish is not for this state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refused;
 
@@ -360,7 +343,7 @@ mod tests {
         #[test]
         fn force_and_motion_follow_an_engagement_only(steps in prop::collection::vec((0_u8..7, any::<[bool; 5]>()), 1..300)) {
             let mut interlock = Interlock::<u8>::default();
-            // Whether an engagement was asked for since the last time that something ended one.
+            // Whether engagement has been requested since the last event that ends it.
             let mut wanted = false;
             for (k, (what, seen)) in steps.into_iter().enumerate() {
                 let now_s = k as f64;

@@ -1,8 +1,9 @@
-//! Between every model and the hand: a fixed chain of gates. Nothing passes around it.
+//! Between every model and the hand: a fixed chain of gates that no force bypasses.
 //!
-//! Takes the force (N) a mode asks for, its age (s), the hand's speed (m/s) and place (m); gives a force that is finite, young,
-//! wanted, paid for and bounded, and says which gates acted, why, and how often. One file per gate; [`Chain`] is their order.
-//! Bad input (NaN, infinite, too old) gives zero, never a panic. Knows no device, file or thread.
+//! Takes the force (N) that a mode requests, its age (s), the hand's speed (m/s) and position (m); returns a force that
+//! is finite, recent, permitted, passive and bounded, and reports which gates acted, why, and how often. One file per
+//! gate; [`Chain`] defines their order. Bad input (NaN, infinite, too old) gives zero, never a panic. Uses no devices,
+//! files or threads.
 
 mod age;
 mod ceiling;

@@ -1,34 +1,27 @@
-//! What the gates say of themselves: which acted in a tick, why, and how often so far.
+//! Report of the gates: which acted in a tick, why, and how often so far.
 
 /// The gates, in the order of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gate {
-    /// Whether the state machine allows force at all.
     Permission,
-    /// Whether there is a force, finite and plausible.
+    /// Whether a force exists, finite and plausible.
     Validity,
-    /// How old the data behind it are.
+    /// Age of the data behind the force.
     Age,
-    /// Whether the hand moves.
     DeadBand,
-    /// The operator's factor.
     Gain,
-    /// How fast the force changes.
     Slew,
-    /// How much more energy the hand gets back than it gave.
+    /// Energy that the hand gets back, compared with the energy that it put in.
     Energy,
-    /// How large the force is.
     Ceiling,
-    /// Whether somebody carries the force.
+    /// Whether a hand carries the force.
     Governor,
 }
 
-/// Number of gates.
 pub const GATES: usize = 9;
 
 impl Gate {
-    /// Every gate, in the order of the chain.
     pub const ALL: [Self; GATES] = [
         Self::Permission,
         Self::Validity,
@@ -41,12 +34,12 @@ impl Gate {
         Self::Governor,
     ];
 
-    /// Position in [`Gate::ALL`], for tables with one entry per gate.
+    /// Returns the position in [`Gate::ALL`], for tables with one entry per gate.
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Its name in a trace.
+    /// Returns the name in a trace.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Permission => "not_permitted",
@@ -62,32 +55,25 @@ impl Gate {
     }
 }
 
-/// Why a gate took force away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// It did not: the force passed.
+    /// The force passed.
     #[default]
     Open,
-    /// The loop is not engaged.
     NotPermitted,
-    /// The mode has nothing valid to render.
+    /// The mode has no valid force to render.
     NothingAsked,
-    /// The request is no finite number.
     NotFinite,
-    /// The request is larger than any contact.
     Implausible,
-    /// The data are older than the link explains: the force fades.
+    /// The data are older than the link's delay: the force fades.
     Ageing,
     /// The data are too old, or of unknown age.
     TooOld,
-    /// The hand is slower than the dead band.
     HandSlow,
-    /// The speed of the hand is not known.
     SpeedUnknown,
-    /// The operator set the gain to zero.
     GainZero,
-    /// The gain is on its way to the value that was chosen.
+    /// The gain is still ramping to the value that was set.
     GainRamping,
     /// The force would change too fast.
     ChangeTooFast,
@@ -97,27 +83,27 @@ pub enum Reason {
     AboveCeiling,
     /// The force is above what the device can give.
     AboveDeviceLimit,
-    /// The handle moves along the force as a hand hardly moves it: the force fades, or returns after that.
+    /// The handle moves along the force in a way that a hand hardly does: the force fades, or recovers from fading.
     RunsAway,
-    /// The handle rests after a release, and there has been no sign of a hand since.
+    /// The handle is at rest after a release, and no sign of a hand has followed.
     HandGone,
-    /// The hand has let go beyond doubt: no force but the brake's.
+    /// The handle has certainly been released: only the brake's force passes.
     LetGo,
 }
 
-/// How often each gate acted since the chain was made, and why it last did.
+/// Number of times that each gate acted since the chain was created, and its last reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct GateCounts {
-    /// Counts every request, whether a gate acted or not.
+    /// Number of requests, whether a gate acted or not.
     pub ticks: u64,
-    /// Requests on which each gate acted, indexed by [`Gate::index`].
+    /// Number of requests on which each gate acted, indexed by [`Gate::index`].
     pub acted: [u64; GATES],
-    /// Why each gate last acted; [`Reason::Open`] if it never did.
+    /// Last reason of each gate; [`Reason::Open`] if it never acted.
     pub last: [Reason; GATES],
 }
 
 impl GateCounts {
-    /// Share of all requests on which `gate` acted, 0 to 1.
+    /// Returns the fraction of all requests on which `gate` acted, 0 to 1.
     pub fn share(&self, gate: Gate) -> f64 {
         if self.ticks == 0 { 0.0 } else { self.acted[gate.index()] as f64 / self.ticks as f64 }
     }
@@ -133,53 +119,51 @@ impl GateCounts {
     }
 }
 
-/// What each gate did in one tick. [`Reason::Open`] everywhere means the force passed untouched.
+/// Actions of the gates in one tick. [`Reason::Open`] everywhere means that the force passed unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GateReport {
-    /// Why each gate acted, indexed by [`Gate::index`].
+    /// Reason of each gate, indexed by [`Gate::index`].
     pub reasons: [Reason; GATES],
-    /// How much force the dead band kept from the hand, N.
+    /// Force that the dead band removed, N.
     pub withheld_n: f64,
-    /// Share of the force that the governor kept from the handle, 0 to 1.
+    /// Fraction of the force that the governor removed, 0 to 1.
     pub governed: f64,
-    /// The gain in force in this tick.
     pub gain: f64,
-    /// What the hand may still get back, J; below zero: what it got too much (seen unless the gate is off).
+    /// Energy that the hand may still get back, J; negative if it got too much (computed unless the gate is off).
     pub stored_j: f64,
-    /// Counters since the chain was made, this tick included.
+    /// Counters since the chain was created, including this tick.
     pub counts: GateCounts,
 }
 
 impl GateReport {
-    /// Notes that `gate` acted for this reason; [`Reason::Open`] notes nothing.
+    /// Records that `gate` acted for this reason; [`Reason::Open`] records nothing.
     pub(super) const fn note(&mut self, gate: Gate, reason: Reason) {
         self.reasons[gate.index()] = reason;
     }
 
-    /// The same with `gate` having acted for this reason: for tests of what reads a report.
+    /// Returns the report with `gate` having acted for this reason; for tests of code that reads a report.
     #[must_use]
     pub const fn with(mut self, gate: Gate, reason: Reason) -> Self {
         self.note(gate, reason);
         self
     }
 
-    /// `gate` took force away in this tick, or held it back.
+    /// Returns whether `gate` removed or held back force in this tick.
     pub const fn acted(&self, gate: Gate) -> bool {
         !matches!(self.reason(gate), Reason::Open)
     }
 
-    /// Why `gate` acted in this tick.
     pub const fn reason(&self, gate: Gate) -> Reason {
         self.reasons[gate.index()]
     }
 
-    /// The first gate that acted, if any. The gain's ramp is no closed gate; a gain of zero is.
+    /// Returns the first gate that acted, if any. A ramping gain does not count; a gain of zero does.
     pub fn first(&self) -> Option<(Gate, Reason)> {
         let acted = |reason| !matches!(reason, Reason::Open | Reason::GainRamping);
         Gate::ALL.into_iter().map(|gate| (gate, self.reason(gate))).find(|(_, reason)| acted(*reason))
     }
 
-    /// The first closed gate in one word, for a trace; `open` when the force passed untouched.
+    /// Returns the first closed gate in one word, for a trace; `open` if the force passed unchanged.
     pub fn first_closed(&self) -> &'static str {
         self.first().map_or("open", |(gate, _)| gate.name())
     }

@@ -1,26 +1,23 @@
-//! Limits and knobs of a chain, and their safe values.
+//! Settings of a chain and their safe defaults.
 
 use super::Handle;
 use crate::limits::{DEAD_BAND_M_S, GAIN_ABOVE_ONE, OMEGA7_FORCE_N, OMEGA7_GRIPPER_N, USUAL_CEILING_N};
 
-/// What the energy gate does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnergyMode {
-    /// Nothing.
+    /// No observation, no limit.
     Off,
-    /// Counts the energy, takes nothing away.
     Observe,
-    /// Takes away what would give the hand more than it gave.
+    /// Removes the force that would give the hand more energy than it put in.
     #[default]
     Control,
 }
 
 impl EnergyMode {
-    /// Every mode.
     pub const ALL: [Self; 3] = [Self::Off, Self::Observe, Self::Control];
 
-    /// The word in files.
+    /// Returns the word used in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Off => "off",
@@ -30,38 +27,37 @@ impl EnergyMode {
     }
 }
 
-/// Limits and knobs of the chain. Defaults are the project's safe values. A chain of torques reads Nm for N and rad/s for m/s.
+/// Settings of the chain. The defaults are the project's safe values. In a chain of torques, read Nm for N and rad/s
+/// for m/s.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChainSettings {
-    /// Feedback gain, 0 to 1 (a chain starts at 1 at most; above 1 it goes by [`Chain::set_gain_above_one`](super::Chain)).
+    /// Feedback gain, 0 to 1 (a chain starts at most at 1; above 1 see [`Chain::set_gain_above_one`](super::Chain)).
     pub gain: f64,
-    /// Fastest change of the gain, 1/s: a slider jump becomes a ramp.
+    /// Maximum rate of change of the gain, 1/s: a jump of the slider becomes a ramp.
     pub gain_rate_per_s: f64,
-    /// Largest force that ever reaches the hand, N (norm of the vector).
+    /// Maximum force at the hand, N (norm of the vector).
     pub ceiling_n: f64,
-    /// What the device itself can give, N; the ceiling is never above it.
+    /// Maximum force of the device itself, N; the ceiling is never above it.
     pub device_limit_n: f64,
-    /// Fastest change of the force, N/s.
     pub slew_n_per_s: f64,
     /// Age beyond the link's own delay at which the force begins to fade, s.
     pub fade_after_s: f64,
     /// Age beyond the link's own delay at which it is zero, s.
     pub zero_after_s: f64,
-    /// Speed below which nothing is rendered, m/s.
+    /// Speed below which no force is rendered, m/s.
     pub dead_band_m_s: f64,
-    /// Keep the force at standstill instead of fading it in the dead band.
+    /// Keeps the force at standstill instead of fading it in the dead band.
     pub static_hold: bool,
-    /// What the energy gate does.
     pub energy: EnergyMode,
-    /// Apparent mass of the handle alone, kg, by which the governor tells a handle that nobody holds; 0: not known, then it passes
-    /// everything.
+    /// Apparent mass of the handle alone, kg, from which the governor recognises a released handle; 0 if unknown: the
+    /// governor then passes everything.
     pub handle_kg: f64,
-    /// What the handle's bearings and cables brake, N s/m.
+    /// Viscous friction of the handle's bearings and cables, N s/m.
     pub handle_n_s_m: f64,
-    /// Step of the handle's reading, m: what the hand's speed is told from.
+    /// Step of the handle's reading, m; it determines the accuracy of the hand's speed.
     pub handle_step_m: f64,
-    /// Most viscous damping that the device can make of its force without shaking, N s/m: the governor's brake.
+    /// Maximum viscous damping that the device can render without oscillating, N s/m: the governor's brake.
     pub brake_n_s_m: f64,
 }
 
@@ -72,7 +68,8 @@ impl Default for ChainSettings {
             gain_rate_per_s: 2.0,
             ceiling_n: USUAL_CEILING_N,
             device_limit_n: OMEGA7_FORCE_N,
-            // 5 N within 10 ms: faster than a hand can feel as a ramp, slow enough that one bad sample moves 0.5 N.
+            // 5 N within 10 ms: too fast to be felt as a ramp, slow enough that one bad sample changes the force by
+            // only 0.5 N.
             slew_n_per_s: 500.0,
             fade_after_s: 0.005,
             zero_after_s: 0.020,
@@ -82,42 +79,45 @@ impl Default for ChainSettings {
             // An omega.7 at its grip.
             handle_kg: 0.25,
             handle_n_s_m: 0.5,
-            // Of an omega.7, and of the simulated handles.
+            // An omega.7, and the simulated handles.
             handle_step_m: 1e-5,
-            // The most that chai3d asks of an omega.7.
+            // The maximum damping that chai3d uses for an omega.7.
             brake_n_s_m: 30.0,
         }
     }
 }
 
 impl ChainSettings {
-    /// For the force of a gripper (N between the fingers): the same gates, but what is held is felt.
+    /// Returns the settings for a gripper force (N between the fingers): the same gates, but a held object is felt at
+    /// standstill.
     pub fn gripper() -> Self {
         Self { device_limit_n: OMEGA7_GRIPPER_N, static_hold: true, ..Self::default() }.without_governor()
     }
 
-    /// For a torque on the handle (Nm, rad/s; a sigma.7 gives 0.4 Nm, an omega.7 none: then the limit is 0).
+    /// Returns the settings for a torque on the handle (Nm, rad/s; a sigma.7 renders up to 0.4 Nm, an omega.7 none: its
+    /// limit is 0).
     pub fn torque(device_limit_nm: f64) -> Self {
         Self {
             ceiling_n: 0.1,
             device_limit_n: device_limit_nm,
             slew_n_per_s: 12.5,
             dead_band_m_s: 0.02,
-            // The allowance of the energy gate is one of forces; a torque's energy is a hundredth of it.
+            // The allowance of the energy gate is meant for forces; a torque's energy is a hundredth of it.
             energy: EnergyMode::Observe,
             ..Self::default()
         }
         .without_governor()
     }
 
-    /// The same for what has no handle of known mass. A gripper: what its finger weighs is told nowhere, and one that is let go opens
-    /// to its stop, which is how it rests. A torque: so it is with the wrist's inertia.
+    /// Returns the settings without the governor, for a device of unknown inertia. The mass of a gripper's finger is
+    /// not documented, and a released gripper opens to its stop, where it rests. The same applies to the inertia of a
+    /// wrist.
     #[must_use]
     pub fn without_governor(self) -> Self {
         Self { handle_kg: 0.0, ..self }
     }
 
-    /// The handle that the governor observes.
+    /// Returns the handle that the governor observes.
     pub(super) const fn handle(&self) -> Handle {
         Handle {
             mass_kg: self.handle_kg,
@@ -127,7 +127,7 @@ impl ChainSettings {
         }
     }
 
-    /// Every value within its range; one that is not a number takes its safe value.
+    /// Returns the settings with every value clamped to its range; NaN becomes the safe default.
     #[must_use]
     pub(super) fn pulled_in(self) -> Self {
         let safe = Self::default();

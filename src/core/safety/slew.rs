@@ -1,10 +1,10 @@
-//! Fifth gate: the force changes no faster than this, so that no step kicks the hand.
+//! Fifth gate: limits the rate of change of the force, so that no step kicks the hand.
 
 use nalgebra::SVector;
 
 use super::Reason;
 
-/// The limit and the last force that left the chain.
+/// The slew limit and the last force that left the chain.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -12,7 +12,7 @@ use super::Reason;
 ///
 /// let slew = Slew::new(500.0, 1e-3);
 /// let (force_n, reason) = slew.limited(Vector3::new(3.0, 0.0, 0.0), 1e-3);
-/// assert!((force_n.x - 0.5).abs() < 1e-12, "500 N/s are 0.5 N in a millisecond");
+/// assert!((force_n.x - 0.5).abs() < 1e-12, "500 N/s are 0.5 N per millisecond");
 /// assert_eq!(reason, Reason::ChangeTooFast);
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -23,14 +23,15 @@ pub struct Slew<const D: usize> {
 }
 
 impl<const D: usize> Slew<D> {
-    /// At most `n_per_s` (N/s) in a loop of this nominal period (s), starting without force.
+    /// Limits the change to `n_per_s` (N/s) in a loop of this nominal period (s), starting without force.
     pub fn new(n_per_s: f64, period_s: f64) -> Self {
         Self { n_per_s, period_s, last_n: SVector::zeros() }
     }
 
-    /// Returns the force nearest to `force_n` (N) that the limit allows `dt_s` (s) after the last one, and whether it differs.
+    /// Returns the force nearest to `force_n` (N) that the limit allows `dt_s` (s) after the last one, and whether it
+    /// differs.
     ///
-    /// A tick that is late allows no more than one that is not: the hand feels the whole change at once.
+    /// A late tick allows no more than a punctual one, because the hand feels the whole change at once.
     pub fn limited(&self, force_n: SVector<f64, D>, dt_s: f64) -> (SVector<f64, D>, Reason) {
         let step = force_n - self.last_n;
         let norm = step.norm();
@@ -41,12 +42,12 @@ impl<const D: usize> Slew<D> {
         (self.last_n + step * (max_n / norm), Reason::ChangeTooFast)
     }
 
-    /// The force (N) that left the chain.
+    /// Returns the last force (N) that left the chain.
     pub const fn last_n(&self) -> SVector<f64, D> {
         self.last_n
     }
 
-    /// Takes in the force (N) that left the chain.
+    /// Stores the force (N) that left the chain.
     pub const fn left(&mut self, force_n: SVector<f64, D>) {
         self.last_n = force_n;
     }
@@ -70,7 +71,7 @@ mod tests {
                 let (now, reason) = slew.limited(asked, dt_s);
                 prop_assert!((now - slew.last_n()).norm() <= 500.0 * dt_s.min(1e-3) * (1.0 + 1e-12));
                 prop_assert_eq!(reason == Reason::Open, now == asked);
-                prop_assert!((asked - now).norm() <= (asked - slew.last_n()).norm(), "never away from what is asked");
+                prop_assert!((asked - now).norm() <= (asked - slew.last_n()).norm(), "never away from the requested force");
                 slew.left(now);
             }
         }

@@ -1,4 +1,4 @@
-//! First gate: a force must be there, finite and plausible. What is not is refused whole, never clipped.
+//! First gate: a force must exist, be finite and be plausible. An invalid force is refused completely, never clipped.
 
 use nalgebra::SVector;
 
@@ -7,10 +7,10 @@ use super::Reason;
 /// A request beyond this on any axis is a computing error, not a contact, N (Nm for a torque): it is refused, not clipped.
 pub const PLAUSIBLE_N: f64 = 1e3;
 
-/// The force as it was asked for (N), or why it is none.
+/// Returns the requested force (N) unchanged.
 ///
 /// # Errors
-/// Why the force is refused: absent, not finite, or larger than [`PLAUSIBLE_N`].
+/// The reason for the refusal: absent, not finite, or larger than [`PLAUSIBLE_N`].
 ///
 /// ```
 /// use nalgebra::Vector3;

@@ -2,7 +2,6 @@
 
 use super::Lanes;
 
-/// Number of filters in a [`LowPassBank`].
 pub const BANK: usize = 4;
 
 /// The difference between a signal and its low-pass filtered past, for four time constants.
@@ -26,7 +25,7 @@ pub struct LowPassBank {
 }
 
 impl LowPassBank {
-    /// Time constants from `shortest_s` (at least one sample) to `longest_s`, in geometric steps.
+    /// Creates filters with time constants from `shortest_s` (at least one sample) to `longest_s`, in geometric steps.
     pub fn new(shortest_s: f64, longest_s: f64, rate_hz: f64) -> Self {
         let period_s = rate_hz.recip();
         let shortest_s = shortest_s.max(period_s);
@@ -51,7 +50,6 @@ impl LowPassBank {
         differences
     }
 
-    /// Resets the filters.
     pub fn reset(&mut self) {
         self.started = false;
     }

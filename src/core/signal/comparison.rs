@@ -22,7 +22,7 @@ struct Figures {
     error: [f64; 2],
 }
 
-/// Root mean squares of the deviations of (v, a) from `truth`, which gives (x, v, a) at a time.
+/// Returns the root mean squares of the deviations of (v, a) from `truth`, which gives (x, v, a) at a time.
 fn deviation(kind: DifferentiatorKind, truth: impl Fn(f64, usize) -> [f64; 3]) -> [f64; 2] {
     let mut differentiator = Differentiator::new(kind, RATE_HZ);
     let mut sums = [0.0; 2];
@@ -39,7 +39,7 @@ fn deviation(kind: DifferentiatorKind, truth: impl Fn(f64, usize) -> [f64; 3]) -
     sums.map(|sum| (sum / count).sqrt())
 }
 
-/// Lag of (v, a) of a sinusoid of `hz` (ms), from their phase.
+/// Returns the lag of (v, a) of a sinusoid of `hz` (ms), from their phase.
 fn lag_ms(kind: DifferentiatorKind, hz: f64) -> [f64; 2] {
     let mut differentiator = Differentiator::new(kind, RATE_HZ);
     let mut parts = [[0.0; 2]; 2];

@@ -23,7 +23,8 @@ pub struct DelayLine<T> {
 }
 
 impl<T: Copy> DelayLine<T> {
-    /// A line that can look back up to `max_delay` pushes; `blank` only initialises the memory and is never returned.
+    /// Creates a line that stores the last `max_delay` pushes; `blank` only initialises the memory and is never
+    /// returned.
     pub fn new(max_delay: usize, blank: T) -> Self {
         Self { ring: vec![blank; max_delay + 1], newest: max_delay, filled: 0 }
     }
@@ -43,8 +44,8 @@ impl<T: Copy> DelayLine<T> {
         &mut self.ring[self.newest]
     }
 
-    /// The value that was pushed `delay` pushes before the newest (0: the newest itself); `None` if fewer values were
-    /// pushed or the line is too short.
+    /// Returns the value that was pushed `delay` pushes before the newest (0: the newest itself); `None` if fewer
+    /// values were pushed or the line is too short.
     #[inline]
     pub fn get(&self, delay: usize) -> Option<&T> {
         if delay >= self.filled {
@@ -54,28 +55,25 @@ impl<T: Copy> DelayLine<T> {
         self.ring.get(index)
     }
 
-    /// The value pushed `delay` pushes ago, or the oldest one stored; `None` only if nothing was pushed yet.
+    /// Returns the value pushed `delay` pushes ago, or the oldest one stored; `None` only if nothing was pushed yet.
     #[inline]
     pub fn get_or_oldest(&self, delay: usize) -> Option<&T> {
         self.get(delay.min(self.filled.checked_sub(1)?))
     }
 
-    /// Number of values stored.
     pub fn len(&self) -> usize {
         self.filled
     }
 
-    /// Whether nothing was pushed since construction or [`DelayLine::clear`].
+    /// Returns whether nothing was pushed since construction or [`DelayLine::clear`].
     pub fn is_empty(&self) -> bool {
         self.filled == 0
     }
 
-    /// The largest delay that this line supports.
     pub fn max_delay(&self) -> usize {
         self.ring.len() - 1
     }
 
-    /// Removes all values, in constant time.
     pub fn clear(&mut self) {
         self.filled = 0;
     }

@@ -13,10 +13,10 @@ pub(super) struct Foaw {
 }
 
 impl Foaw {
-    /// Windows of up to `n` samples at `rate_hz`; `band_m` is the half width of the position noise.
+    /// Creates windows of up to `n` samples at `rate_hz`; `band_m` is the half width of the position noise.
     pub(super) fn new(n: usize, rate_hz: f64, band_m: f64) -> Self {
         let n = n.max(3);
-        // The slope uncertainty of a line over the full window with noise `band`; it is the noise band of the second
+        // The slope uncertainty of a line over the full window with noise `band_m` is the noise band of the second
         // stage.
         let velocity_band = 4.0 * band_m * rate_hz / n as f64;
         Self {
@@ -63,7 +63,7 @@ impl AdaptiveSlope {
         slope
     }
 
-    /// Least-squares slope of the longest window whose end-to-end line keeps every sample within the band.
+    /// Returns the least-squares slope of the longest window whose end-to-end line keeps every sample within the band.
     fn lane_slope(&self, lane: usize) -> f64 {
         let at = |k: usize| self.samples.get(k).map_or(0.0, |sample| sample[lane]);
         let newest = at(0);

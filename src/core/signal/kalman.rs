@@ -9,9 +9,9 @@ use super::{Lanes, Motion};
 /// Estimates position, velocity, acceleration and jerk of a motion whose jerk is driven by white noise; only the
 /// position is measured.
 ///
-/// The gain is the fixed point of the Riccati equation, found once at construction. Its only parameter is a bandwidth: for
-/// spectral density `q` of the noise and `r` of the measurement the closed-loop poles are those of a fourth-order
-/// Butterworth filter with `w^8 = q / r`.
+/// The gain is the fixed point of the Riccati equation, found once at construction. Its only parameter is a bandwidth:
+/// for spectral density `q` of the noise and `r` of the measurement the closed-loop poles are the poles of a
+/// fourth-order Butterworth filter with `w^8 = q / r`.
 #[derive(Clone, Debug)]
 pub(super) struct Kalman {
     gain: [f64; 4],
@@ -22,7 +22,7 @@ pub(super) struct Kalman {
 }
 
 impl Kalman {
-    /// A filter with the given bandwidth (Hz), lowered to a tenth of the rate where that is less.
+    /// Creates a filter with the given bandwidth (Hz), limited to a tenth of the rate.
     pub(super) fn new(bandwidth_hz: f64, rate_hz: f64) -> Self {
         let bandwidth_hz = bandwidth_hz.min(0.1 * rate_hz);
         let period_s = 1.0 / rate_hz;
@@ -50,7 +50,6 @@ impl Kalman {
         Self { gain, period_s, state: [Lanes::ZERO; 4], ticks: 0, settling_ticks }
     }
 
-    /// Adds the newest position.
     pub(super) fn step(&mut self, position: Lanes) -> Motion {
         if self.ticks == 0 {
             self.state = [position, Lanes::ZERO, Lanes::ZERO, Lanes::ZERO];
@@ -81,7 +80,7 @@ fn transition(t: f64) -> Matrix4<f64> {
     Matrix4::new(1.0, t, t2, t3, 0.0, 1.0, t, t2, 0.0, 0.0, 1.0, t, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// Process covariance of one period for white noise of density `q` on the derivative of the jerk.
+/// Returns the process covariance of one period for white noise of density `q` on the derivative of the jerk.
 fn process_noise(q: f64) -> Matrix4<f64> {
     let factorial = [6.0, 2.0, 1.0, 1.0];
     Matrix4::from_fn(|i, j| q / (factorial[i] * factorial[j] * (7 - i - j) as f64))

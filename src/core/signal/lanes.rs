@@ -1,4 +1,4 @@
-//! Three axes side by side in one vector register.
+//! Three axes in one vector register.
 
 #![expect(
     clippy::inline_always,
@@ -12,39 +12,36 @@ use wide::f64x4;
 
 /// A number closer to zero than this is treated as zero.
 ///
-/// Exponentially weighted means decay for ever while nothing happens. After some minutes they would be subnormal
-/// numbers, which take a hundred times longer to compute with and whose reciprocals are infinite.
+/// Exponentially weighted means decay for as long as their input is zero. After some minutes they would be subnormal
+/// numbers, which are a hundred times slower to compute with and whose reciprocals are infinite.
 pub const NOTHING: f64 = 1e-100;
 
-/// `value`, or 0 if it is closer to zero than [`NOTHING`].
+/// Returns `value`, or 0 if it is closer to zero than [`NOTHING`].
 #[inline(always)]
 pub fn settled(value: f64) -> f64 {
     if value.abs() < NOTHING { 0.0 } else { value }
 }
 
-/// Lanes in one [`Lanes`]: x, y, z and a spare, so that one value fills one 256-bit register.
+/// Number of lanes in [`Lanes`]: x, y, z and a spare, so that one value fills one 256-bit register.
 pub const LANES: usize = 4;
 
 /// The same quantity of every axis: x, y, z, and a spare lane that stays zero.
 ///
 /// Stored as an array and computed as one vector. Without this type the compiler vectorises across the loop instead of
-/// across the lanes, and shuffles (a Cholesky factorisation took twice as long). Products and sums are never fused, so
-/// the results are the same on every computer.
+/// across the lanes, which needs shuffles (a Cholesky factorisation took twice as long). Products and sums are never
+/// fused, so the results are the same on every computer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes(pub [f64; LANES]);
 
 impl Lanes {
-    /// All lanes zero.
     pub const ZERO: Self = Self([0.0; LANES]);
 
-    /// The same number in every lane.
     #[inline(always)]
     pub const fn splat(value: f64) -> Self {
         Self([value; LANES])
     }
 
-    /// Applies `f` lane by lane.
     #[must_use]
     #[inline(always)]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
@@ -52,7 +49,6 @@ impl Lanes {
         Self([f(x), f(y), f(z), f(w)])
     }
 
-    /// Applies `f` to pairs of lanes.
     #[must_use]
     #[inline(always)]
     pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
@@ -61,41 +57,38 @@ impl Lanes {
         Self([f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)])
     }
 
-    /// Square roots.
     #[must_use]
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(f64x4::new(self.0).sqrt().to_array())
     }
 
-    /// `1 / self`, and 0 where a lane is 0 or subnormal (its reciprocal may be infinite).
+    /// Returns `1 / self`, and 0 where a lane is 0 or subnormal (its reciprocal may be infinite).
     #[must_use]
     #[inline(always)]
     pub fn recip_or_zero(self) -> Self {
         self.map(|value| if value.abs() < f64::MIN_POSITIVE { 0.0 } else { 1.0 / value })
     }
 
-    /// Lanes closer to zero than [`NOTHING`] set to zero.
+    /// Returns the lanes, with those closer to zero than [`NOTHING`] set to zero.
     #[must_use]
     #[inline(always)]
     pub fn settled(self) -> Self {
         self.map(settled)
     }
 
-    /// Whether every lane is neither infinite nor NaN.
     #[inline(always)]
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|value| value.is_finite())
     }
 
-    /// The three axes as a vector; the spare lane is left out.
+    /// Returns the three axes as a vector, without the spare lane.
     #[inline(always)]
     pub fn vector(self) -> Vector3<f64> {
         let [x, y, z, _] = self.0;
         Vector3::new(x, y, z)
     }
 
-    /// Euclidean norm over the three axes.
     #[inline(always)]
     pub fn norm(self) -> f64 {
         let [x, y, z, _] = self.0;

@@ -1,9 +1,8 @@
-//! A PID controller with a limited integral. The derivative acts on the measurement, so that a step of the goal does
-//! not cause a spike.
+//! A PID controller with a limited integral. The derivative acts on the measurement, so that a step of the set point
+//! causes no spike.
 
 use serde::{Deserialize, Serialize};
 
-/// Gains, and the limit of the integral.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PidGains {
@@ -13,11 +12,11 @@ pub struct PidGains {
     pub integral_per_s: f64,
     /// Output per rate of change of the measurement.
     pub derivative_s: f64,
-    /// Largest contribution of the integral to the output, in both directions.
+    /// Maximum contribution of the integral to the output, in both directions.
     pub integral_max: f64,
 }
 
-/// The controller's state.
+/// A PID controller.
 ///
 /// ```
 /// use nima_core::signal::{Pid, PidGains};
@@ -25,7 +24,7 @@ pub struct PidGains {
 /// let gains = PidGains { proportional: 2.0, integral_per_s: 0.0, derivative_s: 0.0, integral_max: 0.0 };
 /// let mut pid = Pid::new(gains);
 /// assert!((pid.step(1.0, 0.4, 1e-3) - 1.2).abs() < 1e-12);
-/// assert!(pid.step(f64::NAN, 0.4, 1e-3).abs() < 1e-12, "no output from what is no number");
+/// assert!(pid.step(f64::NAN, 0.4, 1e-3).abs() < 1e-12, "NaN gives no output");
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Pid {
@@ -35,19 +34,17 @@ pub struct Pid {
 }
 
 impl Pid {
-    /// At rest.
     pub const fn new(gains: PidGains) -> Self {
         Self { gains, integral: 0.0, last: None }
     }
 
-    /// Resets the state.
     pub const fn reset(&mut self) {
         self.integral = 0.0;
         self.last = None;
     }
 
-    /// The output for this goal and measurement, `dt_s` after the last step. Input that is not finite gives zero and
-    /// changes nothing.
+    /// Returns the output for this set point and measurement, `dt_s` after the last step. A non-finite input gives zero
+    /// and leaves the state unchanged.
     pub fn step(&mut self, goal: f64, measured: f64, dt_s: f64) -> f64 {
         if !(goal.is_finite() && measured.is_finite() && dt_s > 0.0) {
             return 0.0;
@@ -70,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_constant_load_leaves_no_error_at_last() {
-        // A servo with a steady error of 0.05 rad that follows its goal within 10 ms.
+        // A servo with a steady error of 0.05 rad that follows its set point within 10 ms.
         let mut pid = Pid::new(GAINS);
         let mut angle = 0.0;
         let goal = 0.4;

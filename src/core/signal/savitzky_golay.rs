@@ -4,9 +4,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{DelayLine, Lanes, Motion};
 
-/// Least-squares parabola over the last `n` samples; position, velocity and acceleration at the newest one.
+/// A least-squares parabola over the last `n` samples, which gives position, velocity and acceleration at the newest
+/// one.
 ///
-/// Exact for constant acceleration (no lag); the noise of the velocity falls with `n^1.5`, that of the acceleration with `n^2.5`.
+/// Exact for constant acceleration (no lag); the noise of the velocity falls with `n^1.5`, that of the acceleration
+/// with `n^2.5`.
 #[derive(Clone, Debug)]
 pub(super) struct SavitzkyGolay {
     samples: DelayLine<Lanes>,
@@ -15,7 +17,7 @@ pub(super) struct SavitzkyGolay {
 }
 
 impl SavitzkyGolay {
-    /// A parabola over `n >= 3` samples at `rate_hz`.
+    /// Fits a parabola over `n >= 3` samples at `rate_hz`.
     pub(super) fn new(n: usize, rate_hz: f64) -> Self {
         let n = n.max(3);
         // Time in units of the window, newest sample at 0: the Vandermonde matrix is then well conditioned at every

@@ -1,28 +1,31 @@
-//! Speed of a handle whose reading goes in steps.
+//! Speed of a handle that reports its position in steps.
 //!
-//! First-order adaptive windowing (Janabi-Sharifi, Hayward, Chen, "Discrete-time adaptive windowing for velocity estimation", 2000), per
-//! axis: the slope from the newest reading back to the oldest one such that the line between them passes all readings between within a
-//! step. Here the window also ends where it is accurate enough, which makes the delay the least that the error allows.
+//! First-order adaptive windowing (Janabi-Sharifi, Hayward, Chen, "Discrete-time adaptive windowing for velocity
+//! estimation", 2000), per axis: the slope from the newest reading back to the oldest one whose connecting line passes
+//! all readings between them within one step. Here the window also ends as soon as it is accurate enough, which keeps
+//! the delay as short as the permitted error allows.
 //!
-//! Error on a steady motion: at most 10 % and 0.1 mm/s per axis. After a sudden start the speed is past one half after the time
-//! that the motion takes for two steps. At 2 mm/s and 10 um that is 10 ms; no estimate knows of a motion before the first step.
+//! Error of a steady motion: at most 10 % and 0.1 mm/s per axis. After a sudden start the speed exceeds one half of its
+//! true value after the time that the motion takes for two steps. At 2 mm/s and 10 um that is 10 ms; no estimate can
+//! detect a motion before the first step.
 
 use std::collections::VecDeque;
 
 use nalgebra::SVector;
 
-/// The error that is allowed, as a share and m/s.
+/// Permitted error, as a fraction and in m/s.
 const SHARE: f64 = 0.1;
 const LEAST_M_S: f64 = 0.1e-3;
-/// Every reading is looked at this far back, then every so many.
+/// Every one of this many newest readings is examined; of the older ones, one in this many.
 const NEAR: usize = 16;
 const STRIDE: usize = 4;
 /// Longest window, s: a step of 40 um.
 const LONGEST_S: f64 = 0.4;
-/// Room for the last digit in a step.
+/// Tolerance for rounding in the last digit of a step: readings are stored in 32 bits by some devices, so that equal
+/// steps differ in their last digit.
 const ROUNDING: f64 = 1.01;
 
-/// The estimator.
+/// Estimates the speed of a handle.
 ///
 /// ```
 /// use nalgebra::Vector1;
@@ -42,12 +45,12 @@ pub struct Speed<const D: usize> {
     step_m: f64,
     period_s: f64,
     room: usize,
-    /// Time (s) and place (m), the newest first.
+    /// Time (s) and position (m), the newest first.
     readings: VecDeque<(f64, SVector<f64, D>)>,
 }
 
 impl<const D: usize> Speed<D> {
-    /// For a reading in steps of `step_m` (m), taken `rate_hz` times a second. Everything is allocated here.
+    /// Creates an estimator for readings in steps of `step_m` (m) at `rate_hz`. All memory is allocated here.
     pub fn new(step_m: f64, rate_hz: f64) -> Self {
         let step_m = if step_m > 0.0 { step_m } else { f64::MIN_POSITIVE };
         let longest_s = (step_m * (1.0 + SHARE) / LEAST_M_S).min(LONGEST_S);
@@ -55,15 +58,15 @@ impl<const D: usize> Speed<D> {
         Self { step_m, period_s: 1.0 / rate_hz, room, readings: VecDeque::with_capacity(room + 2) }
     }
 
-    /// The handle is here (m) at this time (s): its speed, m/s. A time that does not go on begins anew, at rest; what is not finite is not
-    /// looked at.
+    /// Adds a reading (m) at this time (s) and returns the speed, m/s. If the time does not increase, the estimator
+    /// restarts at rest; non-finite input is ignored.
     pub fn step(&mut self, t_s: f64, at_m: SVector<f64, D>) -> f64 {
         if t_s.is_finite() && at_m.iter().all(|x| x.is_finite()) {
             if self.readings.front().is_some_and(|(last_s, _)| t_s <= *last_s) {
                 self.readings.clear();
             }
             if self.readings.is_empty() {
-                // It has rested here so far.
+                // Assume that the handle was at rest until now.
                 self.readings.extend((1..=self.room).map(|back| (t_s - back as f64 * self.period_s, at_m)));
             }
             self.readings.push_front((t_s, at_m));
@@ -87,7 +90,7 @@ impl<const D: usize> Speed<D> {
                 break;
             }
             slope = line;
-            // The slope may be too large by as much as it may be wrong.
+            // The slope may be too large by as much as the permitted error.
             if self.step_m * (1.0 + SHARE) <= dt_s * (SHARE * slope.abs() + LEAST_M_S) {
                 break;
             }
@@ -109,7 +112,7 @@ mod tests {
     const STEPS_M: [f64; 5] = [1e-6, 2e-6, 5e-6, 1e-5, 2e-5];
     const SPEEDS_M_S: [f64; 7] = [0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 3e-3, 5e-3];
 
-    /// Speeds read of a handle that rests for half a second and then goes at `m_s`, from the start on.
+    /// Returns the speeds estimated for a handle that rests for half a second and then moves at `m_s`.
     fn ramp(step_m: f64, m_s: f64, rate_hz: f64, offset: f64) -> Vec<f64> {
         let mut speed = Speed::new(step_m, rate_hz);
         let read = |t_s: f64| {
@@ -134,7 +137,7 @@ mod tests {
                     let half_s = read.iter().position(|read_m_s| *read_m_s >= 0.5 * m_s).unwrap() as f64 / rate_hz;
                     let most_s = (2.2 * step_m / m_s).max(0.015);
                     assert!(half_s <= most_s, "{step_m} m, {m_s} m/s: {half_s} s");
-                    // Nor does a step look like a leap.
+                    // A single step must not look like a jump either.
                     let most_m_s = read.iter().copied().fold(0.0, f64::max);
                     assert!(most_m_s <= 1.25 * m_s + 0.5 * step_m * rate_hz.min(500.0), "{step_m} {m_s}: {most_m_s}");
                 }

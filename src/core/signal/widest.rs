@@ -1,7 +1,8 @@
-//! The same loop in the widest vectors that this computer has.
+//! Runs the same loop in the widest vectors of this computer.
 //!
-//! A build for every x86-64 knows 128-bit vectors only, so that a [`Lanes`] takes two. Where the processor has 256-bit ones, the
-//! few loops that most of a tick goes into use them. Products and sums are never fused, so the results are the same bit for bit.
+//! A build for every x86-64 processor has only 128-bit vectors, so that one [`Lanes`] takes two. Where the processor
+//! has 256-bit vectors, the few loops that take most of a tick use them. Products and sums are never fused, so the
+//! results are identical to the last bit.
 
 #![expect(clippy::inline_always, reason = "they must be inlined into the function that is compiled for wider vectors")]
 
@@ -9,7 +10,7 @@ use wide::f64x4;
 
 use super::Lanes;
 
-/// Four numbers in one register, or in two.
+/// Four numbers in one register or in two.
 pub(crate) trait Vector: Copy {
     fn of(lanes: &Lanes) -> Self;
     fn lanes(self) -> Lanes;
@@ -24,13 +25,13 @@ pub(crate) trait Work {
     fn run<V: Vector>(self) -> Self::Output;
 }
 
-/// Does the work in the widest vectors.
+/// Runs the work in the widest vectors of this processor.
 #[inline]
 pub(crate) fn widest<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
-        #[expect(unsafe_code, reason = "only so can a function be compiled for more than the least processor")]
-        // SAFETY: the processor has what the function is compiled for.
+        #[expect(unsafe_code, reason = "the only way to compile a function for more than the minimum processor")]
+        // SAFETY: the processor has the features that the function is compiled for.
         return unsafe { avx2::run(work) };
     }
     work.run::<f64x4>()
@@ -64,7 +65,7 @@ impl Vector for f64x4 {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[expect(unsafe_code, reason = "the processor's own vectors; used inside of `run` alone, which is compiled for them")]
+#[expect(unsafe_code, reason = "the processor's own vectors, used only inside `run`, which is compiled for them")]
 mod avx2 {
     use std::arch::x86_64::{__m256d, _mm256_add_pd, _mm256_load_pd, _mm256_mul_pd, _mm256_store_pd, _mm256_sub_pd};
 
@@ -78,8 +79,8 @@ mod avx2 {
     #[derive(Clone, Copy)]
     struct Register(__m256d);
 
-    // SAFETY, of all: `run` is the only one that makes them, and it runs where the processor has them; `Lanes` is aligned to its
-    // 32 bytes.
+    // SAFETY (all functions): only `run` creates these values, and it runs only where the processor has these features;
+    // `Lanes` is aligned to its 32 bytes.
     impl Vector for Register {
         #[inline(always)]
         fn of(lanes: &Lanes) -> Self {

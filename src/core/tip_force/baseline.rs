@@ -17,7 +17,7 @@ struct Regression {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Baselines {
-    /// Per output: index of the input of like name (`fx_n` for `tip_fx_n`), which the baseline "no model" returns
+    /// Per output: index of the input of the same name (`fx_n` for `tip_fx_n`), which the baseline "no model" returns
     /// unchanged.
     like: Vec<Option<usize>>,
     linear: Regression,
@@ -26,15 +26,13 @@ pub struct Baselines {
     soft: Vec<f32>,
 }
 
-/// Name of the baseline that takes the wrist force as it is.
+/// Name of the baseline that uses the unmodified wrist force.
 pub const NO_MODEL: &str = "no model";
-/// Name of the baseline that models the friction.
 pub const FRICTION: &str = "friction";
 /// Names of the baselines, in the order of [`Baselines::predict`].
 pub const BASELINES: [&str; 3] = [NO_MODEL, "linear", FRICTION];
 
 impl Baselines {
-    /// Fits the baselines on rows of these input and output columns, row by row.
     pub fn fit(inputs: &[String], outputs: &[String], x: &[f32], y: &[f32]) -> Self {
         let soft = Expansion::fit(inputs, x).soft(inputs.len());
         let like = |output: &String| {
@@ -50,7 +48,7 @@ impl Baselines {
         }
     }
 
-    /// Whether they belong to a model with these numbers of inputs and outputs.
+    /// Returns whether the baselines belong to a model with these numbers of inputs and outputs.
     pub fn fits(&self, inputs: usize, outputs: usize) -> bool {
         let signs = self.soft.iter().filter(|v0| **v0 > 0.0).count();
         let one = |regression: &Regression, width: usize| {
@@ -63,7 +61,8 @@ impl Baselines {
             && inputs + signs <= 2 * MAX_FEATURES
     }
 
-    /// Predictions of each of [`BASELINES`] for one row of inputs; `None` for an output that a method does not predict.
+    /// Returns the predictions of each of [`BASELINES`] for one row of inputs; `None` for an output that a method does
+    /// not predict.
     pub fn predict(&self, inputs: &[f32]) -> [Vec<Option<f32>>; 3] {
         let none = self.like.iter().map(|column| column.map(|column| inputs[column])).collect();
         let friction = self.friction.predict(&with_signs(inputs, &self.soft));
@@ -71,7 +70,7 @@ impl Baselines {
     }
 }
 
-/// The inputs followed by the soft signs of those that are directions of motion.
+/// Returns the inputs, followed by the soft signs of the directions of motion.
 fn with_signs(inputs: &[f32], soft: &[f32]) -> Vec<f32> {
     let sign = |(v, v0): (&f32, &f32)| (*v0 > 0.0).then(|| v / (v * v + v0 * v0).sqrt());
     inputs.iter().copied().chain(inputs.iter().zip(soft).filter_map(sign)).collect()

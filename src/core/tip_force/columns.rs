@@ -29,10 +29,9 @@ pub const DEFAULT_INPUTS: [&str; 15] = [
 /// Default outputs: the force of the tissue on the tip (`shaft`, N).
 pub const DEFAULT_OUTPUTS: [&str; 3] = ["tip_fx_n", "tip_fy_n", "tip_fz_n"];
 
-/// Most outputs of a model.
 pub const MAX_OUTPUTS: usize = 6;
 
-/// Most features of a network (after quaternions have become matrices).
+/// Maximum number of features of a network (a quaternion counts as its nine matrix entries).
 pub const MAX_FEATURES: usize = 64;
 
 const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
@@ -52,12 +51,12 @@ pub struct Expansion {
     loads: Vec<usize>,
 }
 
-/// `v0` as a share of the root mean square of the column.
+/// `v0` as a fraction of the root mean square of the column. Chosen.
 const SOFT_SHARE: f32 = 0.1;
 
 impl Expansion {
-    /// The conversion for these input columns; `soft[i]` is the `v0` of column `i` if that is a direction of motion.
-    /// `None` if such a number is missing or not positive.
+    /// Creates the conversion for these input columns; `soft[i]` is the `v0` of column `i` if that is a direction of
+    /// motion. Returns `None` if such a number is missing or not positive.
     pub fn new(inputs: &[String], soft: &[f32]) -> Option<Self> {
         let at = |name: &str| inputs.iter().position(|input| input == name);
         let quaternion = match QUATERNION.map(at) {
@@ -71,7 +70,7 @@ impl Expansion {
         positive.then_some(Self { plain, quaternion, directions: softened, loads })
     }
 
-    /// The conversion fitted to these data: every `v0` is a tenth of the column's root mean square.
+    /// Fits the conversion to these data: every `v0` is a tenth of the column's root mean square.
     pub fn fit(inputs: &[String], x: &[f32]) -> Self {
         let rows = (x.len() / inputs.len().max(1)).max(1) as f64;
         let mut square = vec![0.0_f64; inputs.len()];
@@ -87,25 +86,25 @@ impl Expansion {
         })
     }
 
-    /// `v0` of every input column, 0 for columns that are not directions of motion; the argument of [`Self::new`].
+    /// Returns `v0` of every input column, 0 for columns that are not directions of motion; the argument of
+    /// [`Self::new`].
     pub fn soft(&self, inputs: usize) -> Vec<f32> {
         let mut soft = vec![0.0; inputs];
         self.directions.iter().for_each(|(column, v0)| soft[*column] = *v0);
         soft
     }
 
-    /// Number of features.
     pub fn width(&self) -> usize {
         let rotation = if self.quaternion.is_some() { 9 } else { 0 };
         self.plain.len() + rotation + self.directions.len() * (1 + self.loads.len())
     }
 
-    /// Number of measured features, which come first; signs and products follow.
+    /// Returns the number of measured features, which come first; signs and products follow.
     pub fn measured(&self) -> usize {
         self.plain.len() + if self.quaternion.is_some() { 9 } else { 0 }
     }
 
-    /// Name of a feature, for messages.
+    /// Returns the name of a feature, for messages.
     pub fn name(&self, feature: usize, inputs: &[String]) -> String {
         match self.plain.get(feature) {
             Some(&column) => inputs[column].clone(),
@@ -145,7 +144,7 @@ fn is_direction(name: &str) -> bool {
     name.contains("speed") || name.contains("presliding")
 }
 
-/// The rotation matrix of a quaternion of any length, row by row.
+/// Returns the rotation matrix of a quaternion of any length, row by row.
 fn rotation_entries(w: f32, x: f32, y: f32, z: f32) -> [f32; 9] {
     let s = 2.0 / (w * w + x * x + y * y + z * z);
     [

@@ -1,17 +1,15 @@
-//! How well a recording covers the conditions of use: tilt, force, travel, friction in both directions, slow and fast, with
-//! and without contact.
+//! How well a recording covers the conditions of use: tilt, force, travel, friction in both directions, slow and fast,
+//! with and without contact.
 //!
-//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `shaft`); returns maps to draw and, as text, what
-//! is still missing.
+//! Takes rows of [`super::DEFAULT_INPUTS`] with the force at the tip (N, `shaft`); returns maps to draw and, as text,
+//! the conditions that are still missing.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::LIVE_INPUTS;
 
-/// Number of cells along each side of a map.
 pub const MAP: usize = 16;
 
-/// Two-dimensional histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Map {
     /// Number of rows in each cell, `[vertical][horizontal]`, lowest values first.
@@ -29,13 +27,12 @@ impl Map {
         self.counts[place(vertical, ranges[1])][place(horizontal, ranges[0])] += 1;
     }
 
-    /// Number of cells with at least a few rows.
+    /// Returns the number of cells with at least a few rows.
     pub fn filled(&self) -> usize {
         self.counts.iter().flatten().filter(|count| **count >= 3).count()
     }
 }
 
-/// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     pub low: f32,
@@ -50,13 +47,13 @@ impl Span {
         self.high = self.high.max(value);
     }
 
-    /// Width of the range; zero before the first value.
+    /// Returns the width of the range; zero before the first value.
     pub const fn width(&self) -> f32 {
         (self.high - self.low).max(0.0)
     }
 }
 
-/// Largest tilt of the shaft from straight down on a map, as a sine, in both directions.
+/// Maximum tilt of the shaft from straight down on a map, as a sine, in both directions.
 pub const TILT: f32 = 0.8;
 /// Largest force on a map, N: across the shaft and along it, in both directions.
 pub const FORCE_N: f32 = 5.0;
@@ -65,29 +62,26 @@ pub const DEPTH_M: [f32; 2] = [0.0, 0.3];
 /// Largest speed on a map, m/s, in both directions.
 pub const SPEED_M_S: f32 = 0.16;
 
-/// Requirements for a recording before it may be used for training.
+/// Requirements on a recording before it may be used for training. Chosen.
 const ROWS: usize = 6000;
 const TILT_SPAN: f32 = 0.25;
 const DEPTH_SPAN_M: f32 = 0.015;
 const ACROSS_SPAN_N: f32 = 0.6;
 const ALONG_SPAN_N: f32 = 1.5;
 const WAY_SHARE: f64 = 0.12;
-/// A hand at a task is faster than one that records carefully: trained below 0.06 m/s, the network erred by 0.05 N at 0.10 m/s. So
-/// many rows, some three strokes, must be as fast, inwards and outwards.
+/// Hands work faster during a task than during a careful recording: trained below 0.06 m/s, the network erred by 0.05 N
+/// at 0.10 m/s. This many rows, about three strokes, must be this fast, inwards and outwards.
 const BRISK_M_S: f32 = 0.10;
 const BRISK_ROWS: usize = 60;
 const CONTACT_SHARE: [f64; 2] = [0.15, 0.85];
 
-/// One requirement and how far it is met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// What is required.
     pub what: GoalKind,
-    /// How far it is met, 0 to 1.
+    /// Progress, 0 to 1.
     pub share: f64,
 }
 
-/// What a recording has to cover.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GoalKind {
     Tilt,
@@ -100,7 +94,6 @@ pub enum GoalKind {
 }
 
 impl GoalKind {
-    /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Tilt => "Tilt of the shaft",
@@ -113,13 +106,13 @@ impl GoalKind {
         }
     }
 
-    /// What to do until it is met.
+    /// Returns the advice to follow until the requirement is met.
     pub const fn advice(self) -> &'static str {
         match self {
             Self::Tilt => "reach left, right, near and far",
             Self::Depth => "move in and out by 2 cm",
             Self::InAndOut => "move as often outwards as inwards",
-            Self::Speed => "make quick strokes in and out, 10 cm/s at their fastest",
+            Self::Speed => "make quick strokes in and out, up to 10 cm/s",
             Self::Force => "press into the tissue up to 3 N, and drag it sideways",
             Self::Contact => "be in contact half of the time",
             Self::Rows => "go on",
@@ -127,7 +120,6 @@ impl GoalKind {
     }
 }
 
-/// The coverage of a recording so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coverage {
     /// Direction of the shaft (`world`), x horizontal, y vertical, each from -[`TILT`] to [`TILT`].
@@ -166,7 +158,6 @@ impl Default for Coverage {
 }
 
 impl Coverage {
-    /// Adds one row.
     pub fn add(&mut self, inputs: &[f32; LIVE_INPUTS], tip_n: &[f32; 3], contact: bool) {
         let [_, _, _, _, _, _, w, x, y, z, depth_m, speed_m_s, _, travel_m, _] = *inputs;
         let shaft = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)) * Vector3::z();
@@ -184,7 +175,7 @@ impl Coverage {
         self.rows += 1;
     }
 
-    /// All requirements, in the order in which to meet them.
+    /// Returns all requirements, in the order in which to meet them.
     pub fn goals(&self) -> [Goal; 7] {
         let rows = self.rows.max(1) as f64;
         let part = |have: f32, want: f32| f64::from(have / want).clamp(0.0, 1.0);
@@ -208,7 +199,7 @@ impl Coverage {
         ]
     }
 
-    /// The first requirement that is not met; `None` if the recording may be used for training.
+    /// Returns the first requirement that is not met; `None` if the recording may be used for training.
     pub fn next(&self) -> Option<Goal> {
         self.goals().into_iter().find(|goal| goal.share < 1.0)
     }
@@ -218,7 +209,7 @@ impl Coverage {
 mod tests {
     use super::*;
 
-    /// Share of the goal for the speed after these strokes, each of 100 rows with a sine's speeds.
+    /// Returns the progress of the speed goal after these strokes, each of 100 rows with a sine's speeds.
     fn speed_share(peaks_m_s: &[f32]) -> f64 {
         let mut coverage = Coverage::default();
         for peak_m_s in peaks_m_s {

@@ -1,25 +1,24 @@
 //! Detects samples for which a network is unreliable, by their distance from the training data.
 //!
-//! Three scores are computed, each 1 at its limit, and the largest one counts: the distance to the nearest of some
-//! cluster centres of the training data in whitened features; the distance of any single feature outside its range; and
-//! the disagreement of the ensemble. The limits of distance and range are calibrated by cross-validation (each fold in
-//! turn), so that at most about [`FALSE_ALARMS`] of unseen samples from the range of the others are flagged. A value
-//! that is not finite has an infinite score.
+//! Three scores are computed, each 1 at its limit, and the largest one counts: the distance to the nearest cluster
+//! centre of the training data in whitened features; the distance of each feature outside its range; and the
+//! disagreement of the ensemble. The limits of distance and range are calibrated by cross-validation (each fold in
+//! turn), so that at most about [`FALSE_ALARMS`] of the unseen samples within the range of the others are flagged. A
+//! value that is not finite has an infinite score.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Share of samples of unseen trajectories that a limit may flag.
+/// Fraction of the samples of unseen trajectories that a limit may flag: fewer would let the limit depend on a few
+/// samples, more would render the fallback too often. Chosen.
 pub const FALSE_ALARMS: f64 = 0.01;
-/// Margin beyond the calibrated limits if the folds are parts of one session, because another session goes further: in
-/// simulation, the 99th percentile of three unseen sessions was 2 to 14 % beyond the limits.
+/// Margin beyond the calibrated limits if the folds are parts of one session, because another session covers a wider
+/// range: in simulation, the 99th percentile of three unseen sessions was 2 to 14 % beyond the limits.
 const ROOM: f32 = 1.15;
-/// Number of cluster centres.
 const CENTRES: usize = 96;
-/// Iterations of the clustering.
 const ROUNDS: usize = 8;
-/// Smallest variance in the whitening, as a share of the feature's variance: below it the direction is only noise.
+/// Minimum variance in the whitening, as a fraction of the feature's variance: below it the direction is only noise.
 const FLOOR: f64 = 0.02;
-/// Most rows used for the statistics; larger data sets are thinned evenly.
+/// Maximum number of rows used for the statistics; larger data sets are thinned evenly.
 const ROWS: usize = 20_000;
 
 /// Cluster centres, whitening, ranges and limits, for normalised features; only the first `width` features are used.
@@ -31,7 +30,6 @@ pub struct Doubt {
     pub whitening: Vec<f32>,
     /// Whitened centres, `width` numbers each.
     pub centres: Vec<f32>,
-    /// Smallest and largest value of every feature.
     pub range: Vec<[f32; 2]>,
     /// Limit of the distance to the nearest centre.
     pub distance_limit: f32,
@@ -43,8 +41,8 @@ pub struct Doubt {
 
 impl Doubt {
     /// Fits on all rows of `x` (normalised, `stride` numbers a row), with limits calibrated over the folds, which are
-    /// pairs of rows to fit on and rows to judge (possibly whole sessions). `spreads` are the ensemble's disagreements
-    /// on rows that one member was not trained on.
+    /// pairs of rows to fit on and rows to evaluate (possibly whole sessions). `spreads` are the ensemble's
+    /// disagreements on rows that one member was not trained on.
     pub fn fit(
         x: &[f32],
         stride: usize,
@@ -96,8 +94,8 @@ impl Doubt {
         Self { width, whitening, centres, range, distance_limit: 1.0, range_limit: 1.0, spread_limit: 1.0 }
     }
 
-    /// Score of the distance and range of a row of normalised features. `scratch` must have length `width`. Allocates
-    /// nothing.
+    /// Returns the score of the distance and range of a row of normalised features. `scratch` must have length `width`.
+    /// Allocates nothing.
     pub fn outside(&self, features: &[f32], scratch: &mut [f32]) -> f32 {
         let distance = self.distance(features, scratch) / self.distance_limit;
         let score = distance.max(self.reach(features) / self.range_limit);
@@ -105,7 +103,7 @@ impl Doubt {
         if finite && score.is_finite() { score } else { f32::INFINITY }
     }
 
-    /// The score of the ensemble's spread, per output, in standard deviations of it.
+    /// Returns the score of the ensemble's spread, per output in standard deviations of that output.
     pub fn disagreement(&self, spread: &[f32]) -> f32 {
         let score = spread.iter().copied().fold(0.0, f32::max) / self.spread_limit;
         if score.is_finite() { score } else { f32::INFINITY }
@@ -118,7 +116,7 @@ impl Doubt {
         nearest.sqrt()
     }
 
-    /// Largest distance from the middle of a feature's range, in halves of the range.
+    /// Returns the largest distance from the middle of a feature's range, in halves of the range.
     fn reach(&self, features: &[f32]) -> f32 {
         let one = |([low, high], value): (&[f32; 2], &f32)| {
             let half = (0.5 * (high - low)).max(1e-4);
@@ -128,19 +126,19 @@ impl Doubt {
     }
 }
 
-/// Evenly thinned to at most `most` rows.
+/// Returns at most `most` of the rows, thinned evenly.
 fn thinned(rows: &[usize], most: usize) -> Vec<usize> {
     rows.iter().copied().step_by(rows.len().div_ceil(most.max(1)).max(1)).collect()
 }
 
-/// The median over the folds: a fold that leaves out an end of the range is rightly flagged and should not set the
-/// limit.
+/// Returns the median over the folds: a fold that leaves out an end of the range is rightly flagged and should not set
+/// the limit.
 fn median(mut values: Vec<f32>) -> f32 {
     values.sort_by(f32::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
 
-/// The limit that a share of [`FALSE_ALARMS`] of these values exceeds.
+/// Returns the limit that the fraction [`FALSE_ALARMS`] of these values exceeds.
 fn quantile(mut values: Vec<f32>) -> f32 {
     if values.is_empty() {
         return 0.0;
@@ -156,7 +154,8 @@ fn whiten(whitening: &[f32], features: &[f32], to: &mut [f32]) {
     }
 }
 
-/// Rotates to principal axes and divides by their standard deviation, which is limited from below.
+/// Returns the matrix that rotates to the principal axes and divides by their standard deviations, which are limited
+/// from below.
 fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32> {
     let mut covariance = DMatrix::<f64>::zeros(width, width);
     let mut mean = DVector::<f64>::zeros(width);
@@ -177,7 +176,7 @@ fn whitening<'a>(width: usize, rows: impl Iterator<Item = &'a [f32]>) -> Vec<f32
     (0..width).flat_map(|k| (0..width).map(move |i| (k, i))).map(|(k, i)| entry(k, i)).collect()
 }
 
-/// Centres of whitened rows by Lloyd's algorithm, starting from randomly chosen rows.
+/// Finds centres of whitened rows by Lloyd's algorithm, starting from randomly chosen rows.
 fn centres(white: &[f32], width: usize, seed: u64) -> Vec<f32> {
     let rows: Vec<&[f32]> = white.chunks_exact(width).step_by((white.len() / width).div_ceil(4000).max(1)).collect();
     let mut generator = fastrand::Rng::with_seed(seed ^ 0xce27);

@@ -3,7 +3,6 @@
 
 use super::{MAX_OUTPUTS, Model};
 
-/// Output of a model for one row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// The outputs in their own units, in the model's order; unused entries are zero.
@@ -12,11 +11,9 @@ pub struct Estimate {
     pub spread: [f32; MAX_OUTPUTS],
     /// Distance from the training data: 1 is the limit; infinite for inputs that are not finite.
     pub doubt: f32,
-    /// Whether the prediction is unreliable.
     pub in_doubt: bool,
 }
 
-/// A model with its work buffers.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     model: Model,
@@ -32,13 +29,12 @@ impl Estimator {
         Self { model, features, scratch }
     }
 
-    /// The model.
     pub const fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Predicts for one row of inputs, in the order of [`Model::inputs`]. A wrong number of inputs, or one that is not
-    /// finite, gives zeros with `in_doubt`.
+    /// Predicts for one row of inputs, in the order of [`Model::inputs`]. A wrong number of inputs or a non-finite
+    /// input gives zeros with `in_doubt`.
     pub fn estimate(&mut self, inputs: &[f32]) -> Estimate {
         let refused = Estimate { doubt: f32::INFINITY, in_doubt: true, ..Estimate::default() };
         let Self { model, features, scratch } = self;
@@ -70,12 +66,12 @@ impl Estimator {
     }
 }
 
-/// Weight of the nonlinear part: 1 within the training data, falling to 0 at 1.25 times the limit of doubt.
+/// Returns the weight of the nonlinear part: 1 within the training data, falling to 0 at 1.25 times the limit of doubt.
 fn trust(outside: f32) -> f32 {
     (5.0 - 4.0 * outside).clamp(0.0, 1.0)
 }
 
-/// Infinite if a feature that was constant in training differs, beyond rounding, from its value; else zero.
+/// Returns infinity if a feature that was constant in training differs from its value beyond rounding, otherwise zero.
 fn moved(features: &[f32], mean: &[f32], inverse_sd: &[f32]) -> f32 {
     let differs =
         |((x, mean), inverse): ((&f32, &f32), &f32)| *inverse == 0.0 && (x - mean).abs() > 1e-3 * mean.abs() + 1e-5;

@@ -3,18 +3,18 @@
 //!
 //! Takes the gravity-free wrench (N, Nm, `s1`), the wrist's orientation and its depth through the trocar, at the time
 //! of each sample (s); returns one row of [`DEFAULT_INPUTS`]. Friction depends on the direction of the last motion, so
-//! the computation has a state; until that is known, and after a gap in the samples, there is no row. Allocates
-//! nothing.
+//! the computation has a state; until this state is known, and after a gap in the samples, no row is returned.
+//! Allocates nothing.
 //!
-//! The row is in the frame `shaft`, which does not roll with the sensor: the arm's posture rolls it during work by angles that no
-//! recording covers. On the emulated rig 0.2 deg/s led the left arm out of its training data within half a minute.
+//! The row is in the frame `shaft`, which does not roll with the sensor: the arm's posture rolls it during work by
+//! angles that no recording covers. On the emulated rig a roll of 0.2 deg/s took the left arm out of its training data
+//! within half a minute.
 
 use nalgebra::UnitQuaternion;
 
 use super::DEFAULT_INPUTS;
 use crate::frames::{Wrench, WristSample, world_from_shaft};
 
-/// Number of inputs in a row.
 pub const LIVE_INPUTS: usize = DEFAULT_INPUTS.len();
 
 /// Time constants and lengths. A network must be used with the settings with which its data were recorded; only the
@@ -37,14 +37,13 @@ impl Default for FeatureSettings {
     }
 }
 
-/// A stretch counts as known once it has reached this share of its longest length, because from then on it hardly
+/// A stretch counts as known once it has reached this fraction of its maximum length, because from then on it hardly
 /// depends on its initial value.
 const KNOWN_SHARE: f64 = 0.8;
 
-/// A gap between two samples longer than this, s, resets the state.
+/// A gap between two samples longer than this, s, resets the state. Chosen.
 const HOLE_S: f64 = 0.020;
 
-/// Why there is no row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRow {
     /// The sample lacks the wrist's orientation or its depth through the trocar, or is not finite.
@@ -53,16 +52,15 @@ pub enum NoRow {
     NotMoved,
 }
 
-/// The inputs for one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// In the order of [`DEFAULT_INPUTS`].
     pub inputs: [f32; LIVE_INPUTS],
-    /// Rotation into the frame in which the inputs, and the force at the tip that belongs to them, are given.
+    /// Rotation into the frame of the inputs and of the force at the tip that belongs to them.
     pub shaft_from_s1: UnitQuaternion<f64>,
 }
 
-/// The state; one per wrist sensor.
+/// State of the computation; one per wrist sensor.
 #[derive(Clone, Debug)]
 pub struct Features {
     settings: FeatureSettings,
@@ -81,22 +79,21 @@ struct Last {
 }
 
 impl Features {
-    /// The initial state.
     pub const fn new(settings: FeatureSettings) -> Self {
         Self { settings, last: None }
     }
 
-    /// Resets the state.
     pub const fn reset(&mut self) {
         self.last = None;
     }
 
-    /// The row for this sample. Must be called with every sample, in order.
+    /// Returns the row for this sample. Must be called with every sample, in order.
     ///
     /// # Errors
     /// [`NoRow`] if the sample is incomplete or the state is not known yet.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> Result<Row, NoRow> {
-        // The state outlives an incomplete sample: the next complete one tells how far the instrument went meanwhile.
+        // The state survives an incomplete sample: the next complete sample shows how far the instrument moved
+        // meanwhile.
         let complete = sample.world_from_s1.zip(sample.insertion_m);
         let finite = gravity_free.is_finite() && sample.is_finite() && t_s.is_finite();
         let Some((world_from_s1, insertion_m)) = complete.filter(|_| finite) else { return Err(NoRow::Missing) };

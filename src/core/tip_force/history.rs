@@ -1,18 +1,17 @@
 //! Inputs computed from the history of other columns. Friction has a memory: a cable or seal carries different loads
 //! before and after a reversal, which a single row does not show.
 //!
-//! They are named like columns, with colons: `presliding:POSITION:WIDTH` and `midline:LOAD:POSITION:WIDTH`; WIDTH is in
-//! the unit of the position. Both depend only on the path, not on speed or sample rate, and are causal. Their state is
-//! reset with every trajectory.
+//! Their names contain colons: `presliding:POSITION:WIDTH` and `midline:LOAD:POSITION:WIDTH`; WIDTH is in the unit of
+//! the position. Both depend only on the path, not on speed or sample rate, and are causal. Their state is reset with
+//! every trajectory.
 //!
-//! `presliding` is the stop operator of the position over its width, -1 to 1: +1 slides forwards, -1 backwards, in
-//! between is reversing. `midline` is the load without its friction: the difference between the loads of the two
-//! directions (the swing) is measured at every reversal, assuming that the load at the far end is constant meanwhile,
-//! and half of it is subtracted. Until the first reversal the mean swing of the training data is used, which is a
-//! second number in the name. The midline is smoothed over four widths of travel and is held during a reversal. It
-//! follows a slow load; use the load itself as another input for fast changes.
+//! `presliding` is the stop operator of the position over its width, -1 to 1: +1 slides forwards, -1 backwards, values
+//! in between occur while the motion reverses. `midline` is the load without its friction: the difference between the
+//! loads of the two directions (the swing) is measured at every reversal, assuming that the load at the far end is
+//! constant meanwhile, and half of it is subtracted. Until the first reversal the mean swing of the training data is
+//! used, which is the second number in the name. The midline is smoothed over four widths of travel and is held during
+//! a reversal. It follows a slow load; use the load itself as another input for fast changes.
 
-/// An input computed from other columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derived {
     /// The load column; `None` for `presliding`.
@@ -37,7 +36,8 @@ pub struct Memory {
 }
 
 impl Derived {
-    /// Parses a name. `None` for a plain column (no colon); the error says what is wrong with the name.
+    /// Parses a name. Returns `None` for a plain column (no colon), and an error that explains what is wrong with the
+    /// name.
     pub fn parse(name: &str) -> Option<Result<Self, String>> {
         if !name.contains(':') {
             return None;
@@ -67,31 +67,32 @@ impl Derived {
         Some(made.map(build).ok_or_else(refusal))
     }
 
-    /// The columns that it is computed from: position and load (the position twice if there is no load).
+    /// Returns the columns from which the input is computed: position and load (the position twice if there is no
+    /// load).
     pub fn columns(&self) -> [&str; 2] {
         [&self.position, self.load.as_ref().unwrap_or(&self.position)]
     }
 
-    /// Whether its swing must still be determined from the training data.
+    /// Returns whether the swing must still be determined from the training data.
     pub const fn is_open(&self) -> bool {
         self.load.is_some() && self.swing.is_none()
     }
 
-    /// The state at the start of a trajectory. A known swing (in the unit of the load) takes precedence over that in
-    /// the name.
+    /// Creates the state at the start of a trajectory. A known swing (in the unit of the load) takes precedence over
+    /// the one in the name.
     pub fn memory(&self, swing: Option<f32>) -> Memory {
         let swing = swing.or(self.swing).unwrap_or(0.0);
         Memory { width: self.width, last: None, travel: 0.0, side: 0.0, load: 0.0, swing }
     }
 
-    /// The value for the next row, and whether the swing has just been measured.
+    /// Returns the value for the next row, and whether the swing has just been measured.
     pub fn step(&self, memory: &mut Memory, [position, load]: [f32; 2]) -> (f32, bool) {
         let measured = memory.step(position, load);
         let value = if self.load.is_some() { memory.midline(load) } else { memory.travel / memory.width };
         (value, measured)
     }
 
-    /// All swings of a trajectory in order: load forwards minus load backwards at each reversal.
+    /// Returns all swings of a trajectory in order: load forwards minus load backwards at each reversal.
     pub fn swings(&self, rows: &[[f32; 2]]) -> Vec<f32> {
         let mut memory = self.memory(None);
         rows.iter().filter_map(|row| self.step(&mut memory, *row).1.then_some(memory.swing)).collect()

@@ -2,11 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Ridge as a share of the number of rows: columns have variance one, so directions with less variance than this are
+/// Ridge as a fraction of the number of rows: columns have variance one, so directions with less variance than this are
 /// shrunk.
 const RIDGE: f64 = 1e-3;
 
-/// Weights `W` (`inputs x outputs`, row by row) that minimise `|y - x W|^2 + ridge |W|^2` over these rows of normalised data.
+/// Returns the weights `W` (`inputs x outputs`, row by row) that minimise `|y - x W|^2 + ridge |W|^2` over these rows
+/// of normalised data.
 ///
 /// ```
 /// use nima_core::tip_force::linear;

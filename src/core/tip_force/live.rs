@@ -1,9 +1,10 @@
 //! The tip force in the loop: from the network while it is reliable, else from a selectable fallback.
 //!
 //! Takes the gravity-free wrench (N, Nm, `s1`), the wrist sample and its time (s); returns the force at the tip (N,
-//! `s1`) and its source. Outside the training data the network's linear path answers alone; farther outside
-//! (a doubt of 2) the fallback takes over. Both hold from three uncertain samples of the last five until 50 ms have
-//! passed without one. The force is cross-faded over 50 ms, so that the change cannot be felt. Allocates nothing.
+//! `s1`) and its source. Outside the training data the network's linear path answers alone; farther outside (a
+//! doubt of 2) the fallback takes over. Either begins when three of the last five samples are uncertain and lasts until 50 ms
+//! have passed without an uncertain sample. The force is cross-faded over 50 ms, so that the change cannot be felt.
+//! Allocates nothing.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -13,9 +14,8 @@ use crate::frames::{Wrench, WristSample};
 
 /// A valid model with input columns that are not available in the loop.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the model works with {found}, which the live loop does not know; train one on the default columns")]
+#[error("the live loop does not provide the model's input {found}: train a model on the default columns")]
 pub struct NotLive {
-    /// The unavailable columns.
     pub found: String,
 }
 
@@ -26,14 +26,14 @@ pub enum Fallback {
     /// The gravity-free force at the wrist, which includes the trocar's friction.
     #[default]
     WristForce,
-    /// The last reliable force, fading to zero over 0.3 s.
+    /// Reason why the network is not used.
     HoldAndFade,
 }
 
 /// Why the network is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsure {
-    /// The sample is farther outside the training data than the linear path is trusted.
+    /// The sample is so far outside the training data that not even the linear path is trusted.
     OutsideTraining,
     /// The instrument has not moved yet, or samples were missing: the direction of friction is not known.
     NotMoved,
@@ -41,35 +41,36 @@ pub enum Unsure {
     Missing,
 }
 
-/// Result for one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipForceReport {
     /// Force of the tissue on the tip, N (`s1`).
     pub force_s1_n: Vector3<f64>,
-    /// Share of the network in the force, 0 to 1; the remainder is the fallback.
+    /// Fraction of the network in the force, 0 to 1; the remainder is the fallback.
     pub network_share: f64,
-    /// Why the fallback is taking over; `None` while the network is used.
+    /// Reason why the fallback is taking over; `None` while the network is used.
     pub unsure: Option<Unsure>,
-    /// Outside the training data: of the network only the linear path answers.
+    /// Outside the training data: only the network's linear path contributes.
     pub extrapolates: bool,
     /// Distance of this sample from the training data, 1 at the limit; infinite if there is no row of inputs.
     pub doubt: f32,
 }
 
-/// Doubt from which the fallback is used. On the emulated rig, whose task moves otherwise than its training, the mean
-/// error per axis at a doubt of 1.0 to 1.4 was 0.02 to 0.09 N, and at 1.8 to 2.0 it was 0.04 to 0.18 N; that of the
-/// wrist force was 0.3 to 0.9 N and 0.2 to 1.2 N (`docs/calibration.md`).
+/// Doubt above which the fallback is used. On the emulated rig, whose task moves differently from its training, the
+/// network's mean error per axis at a doubt of 1.0 to 1.4 was 0.02 to 0.09 N, and at 1.8 to 2.0 it was 0.04 to 0.18 N;
+/// the error of the wrist force was 0.3 to 0.9 N and 0.2 to 1.2 N (`docs/calibration.md`).
 pub(super) const FAR_OUTSIDE: f32 = 2.0;
-/// Number of uncertain samples among the last five that count.
+/// Number of uncertain samples among the last five that triggers the fallback: a single one is bridged by the last
+/// reliable force.
 const DOUBTFUL_OF_FIVE: u32 = 3;
-/// Time without an uncertain sample after which it is over, s.
+/// Time without an uncertain sample after which the network is used again, s: otherwise the force would alternate
+/// between network and fallback at the limit of doubt. Chosen.
 const SURE_AFTER_S: f64 = 0.050;
-/// Duration of the cross-fade, s.
+/// Duration of the cross-fade, s; too long to be felt as a step. Chosen.
 const HANDOVER_S: f64 = 0.050;
-/// Time in which a held force fades to zero, s.
+/// Time in which a held force fades to zero, s: long enough for a short spell of doubt, and too slow to be felt as a
+/// step. Chosen.
 const HOLD_S: f64 = 0.300;
 
-/// A network in the loop.
 #[derive(Clone, Debug)]
 pub struct TipForce {
     estimator: Estimator,
@@ -82,9 +83,9 @@ pub struct TipForce {
     far: Lasting,
     unsure: Option<Unsure>,
     share: f64,
-    /// Share of the wrist force in the fallback; the remainder is the held force.
+    /// Fraction of the wrist force in the fallback; the remainder is the held force.
     wrist_share: f64,
-    /// The last reliable force, `None` before the first one, and the share of it that has not faded.
+    /// The last reliable force (`None` before the first one), and the fraction of it that has not faded yet.
     held_n: Option<Vector3<f64>>,
     held_share: f64,
     last_t_s: Option<f64>,
@@ -121,18 +122,18 @@ impl TipForce {
         })
     }
 
-    /// The model.
     pub const fn model(&self) -> &Model {
         self.estimator.model()
     }
 
-    /// Force to use while the network is uncertain, as the rig has it.
+    /// Returns the force to use while the network is uncertain, as set in the rig file.
     pub const fn fallback(&self) -> Fallback {
         self.fallback
     }
 
-    /// Force that is used while the network is uncertain now. Before the network was sure for the first time there is none to hold, and
-    /// until the instrument has moved the wrist force is as much friction as tissue, of unknown sign: then no force is the better answer.
+    /// Returns the fallback that applies at present. Before the first reliable prediction there is no force to hold.
+    /// Until the instrument has moved, the wrist force contains as much friction as tissue force, and the sign of the
+    /// friction is unknown: zero force is then the better answer.
     pub fn fallback_now(&self) -> Fallback {
         if self.held_n.is_none() && self.unsure == Some(Unsure::NotMoved) {
             Fallback::HoldAndFade
@@ -141,7 +142,7 @@ impl TipForce {
         }
     }
 
-    /// The force for this sample. Must be called with every sample, in order.
+    /// Returns the force for this sample. Must be called with every sample, in order.
     pub fn step(&mut self, t_s: f64, gravity_free: &Wrench, sample: &WristSample) -> TipForceReport {
         let dt_s = self.last_t_s.map_or(0.0, |last| (t_s - last).clamp(0.0, HANDOVER_S));
         self.last_t_s = Some(t_s);
@@ -191,7 +192,7 @@ impl TipForce {
     }
 }
 
-/// A condition of single samples that holds from several of them until it has not occurred for a while.
+/// A condition on samples that becomes true after several of them and false when none has met it for a while.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lasting {
     is: bool,

@@ -1,9 +1,9 @@
 //! Estimates the force at the tip from the wrist sensor: a small network removes the friction in the trocar.
 //!
 //! Takes named columns (wrist force in N, torque in Nm, orientation, motion through the trocar); returns the force at
-//! the tip in the frame of the wrist sensor without its roll (`shaft`, N), and flags inputs outside the training data. The same code can
-//! learn other named columns, for other instruments. [`Estimator`] allocates nothing; training is in the crate
-//! `nima-training`.
+//! the tip (N) in the frame of the wrist sensor without its roll (`shaft`), and flags inputs outside the training data.
+//! The same code can learn other named columns, for other instruments. [`Estimator`] allocates nothing; training is in
+//! the crate `nima-training`.
 
 mod baseline;
 mod columns;

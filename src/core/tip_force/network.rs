@@ -1,9 +1,9 @@
 //! Inference of the network: an ensemble of small networks, in f32, without allocation.
 //!
 //! A member computes `y = S x + W_k a(... a(W_1 x + b_1) ...) + b_k` with the activation `a(z) = z / sqrt(1 + z^2)`:
-//! smooth, bounded, and made of operations that a vector unit has, so that training and inference compute the same
-//! function. The linear path `S` represents the linear part; the layers learn the nonlinear part, which is faded out
-//! beyond the training data. The ensemble returns the mean of its members. Inputs and outputs are normalised (see
+//! smooth, bounded, and composed of operations that a vector unit provides, so that training and inference compute the
+//! same function. The linear path `S` represents the linear part; the layers learn the nonlinear part, which is faded
+//! out beyond the training data. The ensemble returns the mean of its members. Inputs and outputs are normalised (see
 //! [`Normalisation`](super::Normalisation)); NaN in the input gives NaN.
 
 use super::MAX_OUTPUTS;
@@ -31,8 +31,8 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// A layer with weights stored input by input (`inputs x outputs`) and a bias of length `outputs`; `None` if the
-    /// sizes disagree.
+    /// Creates a layer with weights stored input by input (`inputs x outputs`) and a bias of length `outputs`; `None`
+    /// if the sizes disagree.
     pub fn new(inputs: usize, outputs: usize, weights: &[f32], bias: &[f32]) -> Option<Self> {
         if inputs == 0 || outputs == 0 || weights.len() != inputs * outputs || bias.len() != outputs {
             return None;
@@ -46,17 +46,15 @@ impl Layer {
         Some(layer)
     }
 
-    /// Numbers of inputs and outputs.
     pub const fn shape(&self) -> (usize, usize) {
         (self.inputs, self.outputs)
     }
 
-    /// The weights, `inputs x outputs`, without padding.
+    /// Returns the weights, `inputs x outputs`, without padding.
     pub fn weights(&self) -> Vec<f32> {
         self.weights.chunks(self.padded).flat_map(|row| row[..self.outputs].iter().copied()).collect()
     }
 
-    /// The bias.
     pub fn bias(&self) -> &[f32] {
         &self.bias[..self.outputs]
     }
@@ -73,7 +71,6 @@ impl Layer {
     }
 }
 
-/// One network of the ensemble.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
     layers: Vec<Layer>,
@@ -81,7 +78,7 @@ pub struct Member {
 }
 
 impl Member {
-    /// A network with these layers and the linear path; `None` if the sizes do not match.
+    /// Creates a network with these layers and the linear path; `None` if the sizes do not match.
     pub fn new(layers: Vec<Layer>, skip: Layer) -> Option<Self> {
         let first = layers.first()?;
         let last = layers.last()?;
@@ -90,17 +87,15 @@ impl Member {
         (chained && fits).then_some(Self { layers, skip })
     }
 
-    /// The layers, from the inputs to the outputs.
+    /// Returns the layers, from the inputs to the outputs.
     pub fn layers(&self) -> &[Layer] {
         &self.layers
     }
 
-    /// The linear path.
     pub const fn skip(&self) -> &Layer {
         &self.skip
     }
 
-    /// Numbers of inputs and outputs.
     pub const fn shape(&self) -> (usize, usize) {
         self.skip.shape()
     }
@@ -132,13 +127,11 @@ impl Member {
 /// Output of an ensemble for one row of normalised inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// Mean of the members.
     pub mean: [f32; MAX_OUTPUTS],
     /// Largest distance of a member from that mean, per output.
     pub spread: [f32; MAX_OUTPUTS],
 }
 
-/// An ensemble with its work buffers.
 #[derive(Clone, Debug)]
 pub struct Network {
     members: Vec<Member>,
@@ -146,7 +139,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// An ensemble of members of the same shape; `None` if there are no members or their shapes differ.
+    /// Creates an ensemble of members of the same shape; `None` if there are no members or their shapes differ.
     pub fn new(members: Vec<Member>) -> Option<Self> {
         let shape = members.first()?.shape();
         let widest = members.iter().flat_map(|member| &member.layers).map(|layer| layer.padded).max()?;
@@ -157,18 +150,16 @@ impl Network {
             .then(|| Self { members, buffers: [buffer.clone(), buffer] })
     }
 
-    /// The members.
     pub fn members(&self) -> &[Member] {
         &self.members
     }
 
-    /// Numbers of inputs and outputs.
     pub fn shape(&self) -> (usize, usize) {
         self.members[0].shape()
     }
 
     /// Evaluates all members on normalised inputs. `trust` (0 to 1) scales the nonlinear part: beyond the training data
-    /// it is unreliable, and the linear path alone is the better estimate. Allocates nothing.
+    /// that part is unreliable, and the linear path alone is the better estimate. Allocates nothing.
     pub fn answer(&mut self, inputs: &[f32], trust: f32) -> Answer {
         let count = self.members.len() as f32;
         let (mut mean, mut low, mut high) =

@@ -9,20 +9,19 @@
 /// let normal = Normalisation::of(&values, 2, 0..2);
 /// let mut row = [3.0, 5.0];
 /// normal.apply(&mut row);
-/// assert_eq!(row, [1.0, 0.0], "one standard deviation above the mean; a constant column says nothing");
+/// assert_eq!(row, [1.0, 0.0], "one standard deviation above the mean; a constant column has no effect");
 /// normal.undo(&mut row);
 /// assert_eq!(row, [3.0, 5.0]);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Normalisation {
-    /// One mean for each column.
     pub mean: Vec<f32>,
     /// One over the standard deviation; zero for a constant column, which therefore has no effect.
     pub inverse_sd: Vec<f32>,
 }
 
 impl Normalisation {
-    /// The normalisation of `rows` of a matrix with `width` columns, stored row by row.
+    /// Computes the normalisation of `rows` of a matrix with `width` columns, stored row by row.
     pub fn of(values: &[f32], width: usize, rows: impl Iterator<Item = usize> + Clone) -> Self {
         let count = rows.clone().count().max(1) as f64;
         let mut mean = vec![0.0_f64; width];
@@ -47,12 +46,12 @@ impl Normalisation {
         Self { mean: mean.into_iter().map(|mean| mean as f32).collect(), inverse_sd }
     }
 
-    /// Columns that never change.
+    /// Returns the columns that never change.
     pub fn constant(&self) -> impl Iterator<Item = usize> {
         self.inverse_sd.iter().enumerate().filter(|(_, inverse)| **inverse == 0.0).map(|(column, _)| column)
     }
 
-    /// Normalises one row in place.
+    /// Normalises in place.
     pub fn apply(&self, row: &mut [f32]) {
         for ((value, mean), inverse) in row.iter_mut().zip(&self.mean).zip(&self.inverse_sd) {
             *value = (*value - mean) * inverse;

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::calibration::Judgement;
 
-/// Settings of a training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingSettings {
@@ -14,9 +13,8 @@ pub struct TrainingSettings {
     pub members: usize,
     /// Widths of the hidden layers, one to four of 1 to 256.
     pub hidden: Vec<usize>,
-    /// Most epochs of a member; `None` chooses as many as give about 5000 steps.
+    /// Maximum number of epochs of a member; `None` chooses the number that gives about 5000 steps.
     pub epochs: Option<usize>,
-    /// Rows in a mini-batch.
     pub batch: usize,
     /// Learning rate at the start; it falls along a half cosine to a fiftieth.
     pub learning_rate: f64,
@@ -38,23 +36,21 @@ impl Default for TrainingSettings {
     }
 }
 
-/// Optimiser steps of a member if the caller gives no number of epochs.
+/// Optimiser steps of a member if the caller sets no number of epochs.
 const STEPS: usize = 5000;
 
 impl TrainingSettings {
-    /// Most epochs for this many training rows.
+    /// Returns the maximum number of epochs for this many training rows.
     pub fn epochs_for(&self, rows: usize) -> usize {
         self.epochs.unwrap_or_else(|| (STEPS / rows.div_ceil(self.batch).max(1)).clamp(10, 500))
     }
 }
 
-/// Result of training one member.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemberFigures {
     /// Epoch whose weights were kept, from 1; 0 if the linear path alone was best.
     pub epoch: usize,
-    /// Epochs run.
     pub epochs: usize,
     /// Mean square error on the training rows in that epoch, in units of the outputs' variance.
     pub training_loss: f64,
@@ -62,18 +58,15 @@ pub struct MemberFigures {
     pub validation_loss: f64,
 }
 
-/// Result of a check; stored in the model's file.
+/// Result of a check, stored in the model's file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Check {
-    /// Whether the model may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
     /// Date of the check, UTC, ISO 8601.
     pub date: String,
-    /// Number of rows of the check.
     pub rows: usize,
-    /// Mean absolute error per axis, N (`shaft`).
     pub mae_n: [f64; 3],
     /// Standard deviation of the error per axis, N.
     pub sd_n: [f64; 3],
@@ -81,33 +74,27 @@ pub struct Check {
     pub free_mean_n: [f64; 3],
     /// Standard deviation of the prediction without contact, N.
     pub free_sd_n: [f64; 3],
-    /// Share of samples flagged as uncertain.
+    /// Fraction of the samples flagged as uncertain.
     pub doubt_share: f64,
 }
 
-/// Origin of a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
-    /// Serial number of the sensor, as the caller gave it.
+    /// Serial number of the sensor, if the caller gave one.
     pub sensor: Option<String>,
-    /// The tool, as the caller gave it.
     pub tool: Option<String>,
-    /// When it was trained, UTC, ISO 8601.
+    /// Date of the training, UTC, ISO 8601.
     pub date: String,
-    /// Version of this software.
     pub software: String,
     /// Hash of each training file (FNV-1a over its bytes).
     pub data_hashes: Vec<String>,
-    /// Rows trained on.
     pub rows: usize,
     /// Settings of the training, sufficient to repeat it.
     pub settings: TrainingSettings,
-    /// Results of the members.
     pub figures: Vec<MemberFigures>,
     /// Features that were constant in the training data; a sample in which they differ is flagged as uncertain.
     pub constant: Vec<String>,
-    /// Result of a check on data recorded after the training.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check: Option<Check>,
 }

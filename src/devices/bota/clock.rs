@@ -18,22 +18,21 @@ pub enum Step {
     Newer {
         /// Time since the clock's zero, unwrapped, s.
         device_s: f64,
-        /// Readings missing between this one and the previous one.
+        /// Number of readings missing between this one and the previous one.
         missing: u64,
     },
-    /// One of those that were counted as missing.
+    /// A reading that was counted as missing.
     Late,
     /// Not newer: a duplicate, or the clock stands still or was reset.
     Stale,
 }
 
 impl Clock {
-    /// For a sensor with this period, us (must be positive).
+    /// Creates a clock for a sensor with this period, us (must be positive).
     pub const fn new(period_us: f64) -> Self {
         Self { period_us, newest: None, total_us: 0, gap: None }
     }
 
-    /// Adds the time stamp of the next reading.
     pub fn step(&mut self, timestamp_us: u32) -> Step {
         let Some(newest) = self.newest else {
             self.newest = Some(timestamp_us);
@@ -41,7 +40,7 @@ impl Clock {
             return Step::Newer { device_s: self.total_us as f64 * 1e-6, missing: 0 };
         };
         let ahead_us = timestamp_us.wrapping_sub(newest);
-        // More than half the range ahead means that it is behind.
+        // More than half the range ahead means behind.
         if ahead_us == 0 || ahead_us > u32::MAX / 2 {
             return self.behind(timestamp_us, newest);
         }
@@ -115,6 +114,6 @@ mod tests {
         assert_eq!(clock.step(12_000), Step::Late);
         assert_eq!(clock.step(12_000), Step::Stale, "no more were missing");
         assert_eq!(clock.step(13_000), Step::Stale);
-        assert_eq!(clock.step(0), Step::Stale, "a clock that began anew is not newer");
+        assert_eq!(clock.step(0), Step::Stale, "a restarted clock is not newer");
     }
 }

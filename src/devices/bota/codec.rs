@@ -3,6 +3,8 @@
 //! Little-endian; the header byte determines the length (reference `bota.md`, section 1.1). No input or output, no
 //! clock, no allocation. A frame is accepted only with a correct checksum. After a false header the search continues
 //! one byte later, so that the decoder cannot lock onto a constant value in the payload.
+//!
+//! The layout was read from published ROS drivers and compared with the manufacturer's client (`tests/peers`).
 
 use crc::{CRC_16_IBM_SDLC, Crc};
 
@@ -21,7 +23,6 @@ pub const STATUS_BITS: u16 = 0b1111;
 
 const CRC_BYTES: usize = 2;
 
-/// One frame on the wire.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Status word: bit 0 throttled, 1 overrange, 2 invalid, 3 raw; the others are reserved.
@@ -31,11 +32,10 @@ pub struct Frame {
     /// The sensor's clock, us; overflows after 2^32 us (71.6 min).
     pub timestamp_us: u32,
     pub temperature_c: f32,
-    /// Inertial unit, in frames that contain it.
+    /// The inertial unit, in frames that contain it.
     pub inertial: Option<Inertial>,
 }
 
-/// Reading of the inertial unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertial {
     /// Specific force, m/s^2 (at rest +g upwards).
@@ -43,7 +43,7 @@ pub struct Inertial {
     pub angular_velocity_rad_s: [f32; 3],
 }
 
-/// Length of a frame with this header byte; `None` if it is not a header.
+/// Returns the length of a frame with this header byte; `None` if it is not a header.
 pub const fn length_of(header: u8) -> Option<usize> {
     match header {
         HEADER_WRENCH => Some(WRENCH_BYTES),
@@ -55,12 +55,10 @@ pub const fn length_of(header: u8) -> Option<usize> {
 /// CRC-16/X-25: polynomial 0x1021 reflected, initial value and output inverted.
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
 
-/// Why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoFrame {
     /// The first byte is not a header, or the length does not match it.
     Shape,
-    /// The checksum is wrong.
     Checksum,
 }
 
@@ -144,12 +142,10 @@ const ROOM: usize = 2048;
 #[derive(Debug)]
 pub struct Decoder {
     unread: Unread,
-    /// Bytes skipped since the last frame that was refused or accepted, so that the remainder of a refused frame is not
-    /// counted as another one.
+    /// Bytes skipped since the last refused or accepted frame, so that the remainder of a refused frame is not counted
+    /// again.
     since_refused: usize,
-    /// Number of frames refused.
     damaged: u64,
-    /// Number of bytes skipped.
     skipped: u64,
 }
 
@@ -160,7 +156,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
+    /// Returns the buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
         self.unread.room()
     }
@@ -170,8 +166,8 @@ impl Decoder {
         self.unread.filled(count);
     }
 
-    /// The next complete frame; `None` when more bytes are needed. Each call advances in the stream, so the work is
-    /// bounded by the bytes received.
+    /// Returns the next complete frame; `None` when more bytes are needed. Each call advances in the stream, so the
+    /// work is bounded by the bytes received.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
     pub fn next(&mut self) -> Option<Frame> {
         while let Some(first) = self.unread.bytes().first() {
@@ -200,17 +196,16 @@ impl Decoder {
         self.since_refused = self.since_refused.saturating_add(1);
     }
 
-    /// Frames refused because of their checksum; bytes skipped within the length of one frame count once.
+    /// Returns the number of frames refused because of their checksum; bytes skipped within the length of one frame
+    /// count once.
     pub const fn damaged(&self) -> u64 {
         self.damaged
     }
 
-    /// Bytes skipped.
     pub const fn skipped(&self) -> u64 {
         self.skipped
     }
 
-    /// Discards the buffer's content; the counters are kept.
     pub const fn clear(&mut self) {
         self.unread.clear();
     }

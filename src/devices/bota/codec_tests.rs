@@ -5,7 +5,7 @@ fn bytes_of(hex: &str) -> Vec<u8> {
     digits.chunks(2).map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap()).collect()
 }
 
-/// The examples of the reference, section 1.1.
+/// Returns the examples of the reference, section 1.1.
 fn golden() -> [(Frame, Vec<u8>); 2] {
     let wrench = Frame {
         status: 0,

@@ -1,4 +1,4 @@
-//! The running sensor: reads frames, returns checked readings, and reports why there are none.
+//! The running sensor: reads frames, returns checked readings, and reports why readings are missing.
 
 use nalgebra::Vector3;
 use nima_core::frames::Wrench;
@@ -13,16 +13,18 @@ use super::{
 };
 use crate::{Device, ForceReading, ForceStatus, Health, Identity, Loss, Stamped, Standing, Trouble};
 
-/// The sensor is lost if nothing usable has arrived for this time, s, at rates that give at least five readings in it.
+/// The sensor is lost if nothing usable has arrived for this time, s, at rates that give at least five readings in it;
+/// 2 ms remain of the 20 ms after which the loop takes the force away, so that the sensor is named as the cause.
 const SILENCE_S: f64 = 0.018;
-/// At lower rates it is lost after this many periods.
+/// At lower rates it is lost after this many periods, because a sensor at a low rate would otherwise be lost between
+/// two readings.
 const SILENCE_READINGS: f64 = 5.0;
-/// Larger than the range of any sensor of the family, N: a larger number is not a force.
+/// Maximum force, N, larger than the range of any sensor of the family: a larger number is not a force.
 const FORCE_MAX_N: f64 = 1e5;
-/// The same for torques, Nm.
+/// Maximum torque, Nm, larger than the range of any sensor of the family.
 const TORQUE_MAX_NM: f64 = 1e4;
 
-/// Translates status bits of the wire.
+/// Translates the status bits of the protocol.
 pub const fn status_of(status: u16) -> ForceStatus {
     ForceStatus {
         throttled: status & 1 != 0,
@@ -32,7 +34,6 @@ pub const fn status_of(status: u16) -> ForceStatus {
     }
 }
 
-/// Converts a frame to a reading.
 pub fn reading_of(frame: &Frame) -> ForceReading {
     let vector = |values: [f32; 3]| Vector3::from(values.map(f64::from));
     ForceReading {
@@ -44,7 +45,7 @@ pub fn reading_of(frame: &Frame) -> ForceReading {
     }
 }
 
-/// Whether all numbers are finite and within the range of such a sensor.
+/// Returns whether all numbers are finite and within the range of such a sensor.
 fn is_plausible(reading: &ForceReading) -> bool {
     let finite = |vector: Option<Vector3<f64>>| vector.is_none_or(|vector| vector.iter().all(|x| x.is_finite()));
     reading.wrench.force_n.iter().all(|x| x.abs() <= FORCE_MAX_N)
@@ -56,9 +57,9 @@ fn is_plausible(reading: &ForceReading) -> bool {
 
 /// An open, measuring sensor. Dropping it stops the measurement.
 ///
-/// Only usable readings are returned: one that is overrange, invalid or raw, or has impossible numbers, is refused and
-/// counted; a throttled one is returned with its flag. If nothing usable arrives for 18 ms (or five periods, if that is
-/// longer) the sensor is lost; the last data received decide the cause.
+/// Only usable readings are returned: a reading that is overrange, invalid or raw, or has impossible numbers, is
+/// refused and counted; a throttled reading is returned with its flag. If nothing usable arrives for 18 ms (or five
+/// periods, if that is longer) the sensor is lost; the last data received decide the cause.
 pub struct Driver {
     link: Link,
     judge: Judge,
@@ -67,9 +68,10 @@ pub struct Driver {
     low_latency: bool,
     silence_s: f64,
     stop: &'static [u8],
-    /// Whether it has been polled; what arrived before the first poll is stale.
+    /// Whether the sensor has been polled; data that arrived before the first poll are stale.
     begun: bool,
-    /// Damage and skipped bytes before the first reading do not count: the stream was joined in the middle of a frame.
+    /// Damage and skipped bytes before the first reading, which do not count because the stream was joined in the
+    /// middle of a frame.
     base: (u64, u64),
 }
 
@@ -95,10 +97,10 @@ impl Driver {
         Self::open_within(settings, Timeouts::SHORT)
     }
 
-    /// The same with these timeouts.
+    /// Opens the sensor with these timeouts.
     ///
     /// # Errors
-    /// As [`Driver::open`].
+    /// The errors of [`Driver::open`].
     pub fn open_within(settings: &Settings, timeouts: Timeouts) -> Result<Self, Trouble> {
         opening::open(settings, timeouts).map(Self::of)
     }
@@ -110,31 +112,29 @@ impl Driver {
         Self { link, judge, identity, rate_hz, low_latency, silence_s, stop, begun: false, base: (0, 0) }
     }
 
-    /// The configured rate of the readings, Hz.
     pub const fn rate_hz(&self) -> f64 {
         self.rate_hz
     }
 
-    /// Whether the port delivers bytes without delay; if not, readings through an FTDI adapter arrive up to 16 ms late
-    /// and in batches.
+    /// Returns whether the port delivers bytes without delay; if not, readings through an FTDI adapter arrive up to 16
+    /// ms late and in batches.
     pub const fn has_low_latency(&self) -> bool {
         self.low_latency
     }
 
-    /// Status of the newest frame, even if it was refused.
+    /// Returns the status of the newest frame, even if it was refused.
     pub const fn status(&self) -> ForceStatus {
         status_of(self.judge.status)
     }
 
-    /// Time without a usable reading after which the sensor is lost, s.
+    /// Returns the time without a usable reading after which the sensor is lost, s.
     pub const fn silence_limit_s(&self) -> f64 {
         self.silence_s
     }
 
-    /// Stops the measurement and closes the line.
     pub fn close(self) {}
 
-    /// Handles what has arrived; damage is counted from the first reading on.
+    /// Handles the data that have arrived; damage is counted from the first reading on.
     fn take_in(&mut self, now_s: f64) -> Result<Option<Stamped<ForceReading>>, Loss> {
         let before = (self.link.damaged(), self.link.skipped());
         let mut newest = None;
@@ -201,7 +201,6 @@ impl Drop for Driver {
     }
 }
 
-/// Decides which frames become readings.
 #[derive(Debug)]
 struct Judge {
     clock: Clock,
@@ -210,7 +209,7 @@ struct Judge {
     status: u16,
     /// Arrival time of the newest usable reading, s.
     usable_s: f64,
-    /// The cause to report if nothing usable arrives any more.
+    /// The cause to report if no usable data arrive any more.
     suspect: Loss,
 }
 
@@ -254,7 +253,7 @@ impl Judge {
         Some(Stamped { device_s: Some(device_s), arrival_s: now_s, value: reading })
     }
 
-    /// A clock that stands still or goes back is impossible.
+    /// Handles a clock that stands still or goes back, which is impossible.
     const fn stale(&mut self) -> Option<Stamped<ForceReading>> {
         self.health.out_of_order += 1;
         self.suspect = Loss::Implausible;

@@ -23,7 +23,7 @@ fn bytes_of(frame: &Frame) -> Vec<u8> {
     buffer[..length].to_vec()
 }
 
-/// Ten good readings, 1 ms apart.
+/// Returns a driver after ten good readings, 1 ms apart.
 fn running() -> (Driver, MemoryBytes) {
     let (mut driver, mut far) = over_memory(RATE_HZ);
     assert_eq!(driver.poll(0.0), None);
@@ -35,7 +35,8 @@ fn running() -> (Driver, MemoryBytes) {
     (driver, far)
 }
 
-/// Why the driver is lost, and how long after the last good reading, ms, if the line delivers `bytes` in each tick.
+/// Returns why the driver is lost, and how long after the last good reading, ms, if the line delivers `bytes` in each
+/// tick.
 fn lost_after(mut bytes: impl FnMut(u32) -> Vec<u8>) -> (Loss, u32, Health) {
     let (mut driver, mut far) = running();
     for k in 11..100 {

@@ -10,7 +10,6 @@ pub const CONFIG: &[u8] = b"C\n";
 pub const RUN: &[u8] = b"R\n";
 /// Restarts the firmware, which can fix a calibration matrix that was not loaded.
 pub const INIT: &[u8] = b"I\n";
-/// Requests product and serial number.
 pub const PRODUCT: &[u8] = b"p?\n";
 /// Sets the offsets that are saved in the sensor to zero.
 pub const NO_OFFSET: &[u8] = b"b,0.000000,0.000000,0.000000,0.000000,0.000000,0.000000\n";
@@ -21,23 +20,23 @@ pub const BAUDS: [u32; 6] = [9_600, 57_600, 115_200, 230_400, 460_800, 921_600];
 /// Averaging lengths that the sensor accepts.
 pub const SINC: std::ops::RangeInclusive<u16> = 64..=2047;
 
-/// Rate with this averaging length, Hz.
+/// Returns the rate with this averaging length, Hz.
 pub fn rate_hz(sinc: u16) -> f64 {
     51_200.0 / f64::from(sinc)
 }
 
-/// Command for: no temperature compensation, calibration matrix applied, binary frames, line speed `baud_index` of
-/// [`BAUDS`].
+/// Returns the command for no temperature compensation, the calibration matrix, binary frames, and line speed
+/// `baud_index` of [`BAUDS`].
 pub fn communication(baud_index: usize) -> String {
     format!("c,0,1,0,{baud_index}\n")
 }
 
-/// Command for averaging over `sinc` samples, without chopping, fast mode and second filter.
+/// Returns the command for averaging over `sinc` samples, without chopping, fast mode and second filter.
 pub fn filter(sinc: u16) -> String {
     format!("f,{sinc},0,0,1\n")
 }
 
-/// Code of the newest acknowledgement `r,0,<letter>,<code>` of this command in `bytes`; 0 is success.
+/// Returns the code of the newest acknowledgement `r,0,<letter>,<code>` of this command in `bytes`; 0 is success.
 pub fn acknowledged(bytes: &[u8], letter: u8) -> Option<u32> {
     let head = [b'r', b',', b'0', b',', letter, b','];
     bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head).find_map(|(at, _)| {
@@ -53,7 +52,7 @@ fn number(digits: &[u8]) -> u32 {
     digits.iter().fold(0, |sum, digit| sum * 10 + u32::from(digit - b'0'))
 }
 
-/// Serial number and product name in the answer `p,0,<serial>,<x>,<x>,<product>` to [`PRODUCT`].
+/// Returns serial number and product name from the answer `p,0,<serial>,<x>,<x>,<product>` to [`PRODUCT`].
 pub fn product(bytes: &[u8]) -> Option<(String, String)> {
     let text = String::from_utf8_lossy(bytes);
     let begin = text.rfind("p,0,")?;

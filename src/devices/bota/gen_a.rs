@@ -46,17 +46,16 @@ pub const MODE_MAX: u8 = 3;
 /// The first frame format with the inertial unit.
 pub const MODE_INERTIAL: u8 = 2;
 
-/// Command that writes an integer (or the bits of an f32).
+/// Returns the command that writes an integer (or the bits of an f32).
 pub fn write(parameter: Parameter, value: u32) -> String {
     format!("wh,{},{},{value:x}\n", parameter.0, parameter.1)
 }
 
-/// Command that reads a parameter.
+/// Returns the command that reads a parameter.
 pub fn read(parameter: Parameter) -> String {
     format!("rh,{},{},\n", parameter.0, parameter.1)
 }
 
-/// A sensor's answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     /// 0 is success; see [`words`].
@@ -66,12 +65,11 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// The value as an integer; for a float parameter these are the bits of its f32.
+    /// Returns the value as an integer; for a float parameter, the bits of its f32.
     pub fn number(&self) -> Option<u32> {
         u32::from_str_radix(&self.value, 16).ok()
     }
 
-    /// The value as text.
     pub fn text(&self) -> Option<String> {
         let digit = |byte: u8| char::from(byte).to_digit(16);
         let pairs = self.value.as_bytes().chunks_exact(2);
@@ -84,14 +82,14 @@ impl Answer {
     }
 }
 
-/// The newest complete answer in `bytes` to a command that began with `letters` (`wh` or `rh`).
+/// Returns the newest complete answer in `bytes` to a command that began with `letters` (`wh` or `rh`).
 pub fn answer(bytes: &[u8], letters: &[u8; 2]) -> Option<Answer> {
     let head = [letters[0], letters[1], b','];
     let mut begins = bytes.windows(head.len()).enumerate().rev().filter(|(_, window)| *window == head);
     begins.find_map(|(at, _)| whole(&bytes[at + head.len()..]))
 }
 
-/// Status and value up to the end of the line; `None` if there is anything else in between.
+/// Returns status and value up to the end of the line; `None` if there is anything else in between.
 fn whole(bytes: &[u8]) -> Option<Answer> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let line = std::str::from_utf8(&bytes[..end]).ok()?;
@@ -100,7 +98,7 @@ fn whole(bytes: &[u8]) -> Option<Answer> {
     Some(Answer { status: status.parse().ok().filter(|_| good)?, value: value.to_owned() })
 }
 
-/// Meaning of a status.
+/// Returns the meaning of a status.
 pub const fn words(status: u32) -> &'static str {
     match status {
         0 => "good",
@@ -116,7 +114,7 @@ pub const fn words(status: u32) -> &'static str {
     }
 }
 
-/// Encodes a text as the sensor does.
+/// Encodes a text like the sensor.
 pub fn hex_of(text: &str) -> String {
     let digit = |value: u8| char::from_digit(u32::from(value), 16).unwrap_or('0');
     text.bytes().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()

@@ -15,11 +15,11 @@ pub(super) struct Link {
     damaged: u64,
 }
 
-/// Most reads from a serial line in one poll; each fills at most the decoder's buffer.
+/// Maximum number of reads from a serial line in one poll; each fills at most the decoder's buffer.
 const READS_MAX: usize = 16;
-/// Most datagrams read in one poll: over 60 ms of the fastest sensor.
+/// Maximum number of datagrams read in one poll: over 60 ms of the fastest sensor.
 const DATAGRAMS_MAX: usize = 256;
-/// One byte more than the longest frame, so that too long a datagram is recognised.
+/// One byte more than the longest frame, so that a datagram that is too long is recognised.
 const DATAGRAM_BYTES: usize = INERTIAL_BYTES + 1;
 
 impl Link {
@@ -64,7 +64,6 @@ impl Link {
         Ok(())
     }
 
-    /// Discards what has arrived.
     pub(super) fn discard(&mut self) -> Result<(), Loss> {
         self.receive(|_| {})?;
         self.decoder.clear();
@@ -83,7 +82,6 @@ impl Link {
         self.control.send(command)
     }
 
-    /// The connections, for further commands.
     pub(super) fn into_lines(self) -> (Box<dyn Bytes>, Option<Box<dyn Datagrams>>) {
         (self.control, self.stream)
     }

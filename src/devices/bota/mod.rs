@@ -2,7 +2,7 @@
 //! in a network.
 //!
 //! Forces in N, torques in Nm, accelerations in m/s^2, angular velocities in rad/s, all in the sensor's own frame and
-//! as the sensor sends them (no offset or filter is added here). [`Driver::open`] blocks and reports every failure as a
+//! unmodified (no offset or filter is added here). [`Driver::open`] blocks and reports every failure as a
 //! [`Trouble`](super::Trouble). [`Driver`] then neither waits nor allocates, and returns only usable readings.
 //! Configuration: [`Settings`]. The emulator (`nima_simulation::emulators::bota`) uses the same protocols.
 //!

@@ -1,4 +1,4 @@
-//! From settings to a measuring sensor, for the three types of connection; every failure has its cause. Blocks.
+//! Opens and configures a sensor, for the three types of connection; every failure has its cause. Blocks.
 
 use std::{
     net::{IpAddr, SocketAddr, ToSocketAddrs as _, UdpSocket},
@@ -19,11 +19,9 @@ use crate::{
     transport::{Datagrams, Serial, SerialSettings, Tcp, Udp},
 };
 
-/// A sensor that is open and measuring.
 pub(super) struct Opened {
     pub(super) link: Link,
     pub(super) identity: Identity,
-    /// Rate of the readings, Hz.
     pub(super) rate_hz: f64,
     /// Whether the port delivers bytes without delay (always true for the network).
     pub(super) low_latency: bool,
@@ -31,9 +29,10 @@ pub(super) struct Opened {
     pub(super) stop: &'static [u8],
 }
 
-/// TCP port for commands of a network sensor.
+/// TCP port for commands of a network sensor, to which the manufacturer's driver connects, too.
 pub const TCP_PORT: u16 = 23;
-/// How often a first-generation sensor that has not loaded its calibration is restarted.
+/// Maximum number of restarts of a first-generation sensor that has not loaded its calibration, as in `RoboComp`'s
+/// `bota_force_sensor`: some sensors start with the calibration inactive now and then.
 const RESTARTS: u32 = 5;
 const STOP_GEN_A: &[u8] = b"wh,1,2,1\n";
 const FIRST_GENERATION: &str = "first-generation Bota sensor";
@@ -81,7 +80,7 @@ fn open_gen0(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble>
     Err(fault_of(&settings.port, RAW_BIT))
 }
 
-/// Stops the stream. Anything else that answers shows what is wrong.
+/// Stops the stream. Any other answer shows what is wrong.
 fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), Trouble> {
     for _ in 0..session.timeouts.tries {
         match session.ask(gen0::CONFIG, |heard| gen0::acknowledged(heard, b'C'))? {
@@ -96,8 +95,8 @@ fn enter_config_gen0(session: &mut Session, settings: &Settings) -> Result<(), T
     Err(session.why_no_answer("C", Some(settings.baud)))
 }
 
-/// From the command that the manufacturer's driver uses, or from the text that the sensor sends at start: not every
-/// firmware knows the command.
+/// Reads the identity with the command of the manufacturer's driver, or from the text that the sensor sends at start,
+/// because not every firmware supports the command.
 fn identity_gen0(session: &mut Session, boot: gen0::BootText) -> Result<Identity, Trouble> {
     let asked = session.ask(gen0::PRODUCT, |heard| {
         gen0::acknowledged(heard, b'p').map(|code| (code == 0).then(|| gen0::product(heard)).flatten())
@@ -153,10 +152,10 @@ fn open_socket(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Troubl
     let mut destination = [0; 4];
     for (part, byte) in (gen_a::DESTINATION.1..).zip(&mut destination) {
         let value = number(&mut session, (gen_a::DESTINATION.0, part))?;
-        *byte = u8::try_from(value).map_err(|_| refused(&session, "rh,30", &format!("{value:x} is no byte")))?;
+        *byte = u8::try_from(value).map_err(|_| refused(&session, "rh,30", &format!("{value:x} is not a byte")))?;
     }
     let port = number(&mut session, gen_a::DESTINATION_PORT)?;
-    let port = u16::try_from(port).map_err(|_| refused(&session, "rh,31,1", &format!("{port:x} is no port")))?;
+    let port = u16::try_from(port).map_err(|_| refused(&session, "rh,31,1", &format!("{port:x} is not a port")))?;
     let destination = SocketAddr::new(destination.into(), port);
     let stream: Box<dyn Datagrams> = Box::new(readings(destination, here, address)?);
     let identity = identity_gen_a(&mut session)?;
@@ -170,7 +169,7 @@ fn open_socket(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Troubl
     }
 }
 
-/// The sensor's address; it supports IPv4 only.
+/// Returns the sensor's address; it supports IPv4 only.
 fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
     let unreachable = || Trouble::Unreachable { place: port.to_owned() };
     let resolved = match port.parse::<IpAddr>() {
@@ -181,15 +180,16 @@ fn address_of(port: &str) -> Result<SocketAddr, Trouble> {
     resolved.ok_or_else(unreachable)
 }
 
-/// Where to listen for readings: at the address to which the sensor sends, if it is one of this computer's, else at the
-/// one through which the sensor is reached. Never at all addresses, so that no other network can inject readings.
+/// Opens the socket for readings: at the address to which the sensor sends, if it belongs to this computer, otherwise
+/// at the address through which the sensor is reached. Never at all addresses, so that another network cannot inject
+/// readings.
 fn readings(destination: SocketAddr, here: Option<IpAddr>, sensor: SocketAddr) -> Result<Udp, Trouble> {
     let at = Some(destination.ip()).filter(|ip| Udp::is_local(*ip)).or(here);
     let at = at.ok_or_else(|| Trouble::Unreachable { place: sensor.to_string() })?;
     Udp::listen(SocketAddr::new(at, destination.port()), sensor.ip())
 }
 
-/// No reading arrives; checks whether the sensor sends them to another computer.
+/// Returns the trouble for missing readings: checks whether the sensor sends them to another computer.
 fn sends_elsewhere(place: String, sensor: SocketAddr, to: SocketAddr) -> Trouble {
     let route = UdpSocket::bind(("0.0.0.0", 0)).and_then(|socket| {
         socket.connect(sensor)?;
@@ -222,7 +222,7 @@ fn identity_gen_a(session: &mut Session) -> Result<Identity, Trouble> {
     let mut text = |parameter| {
         let command = gen_a::read(parameter);
         let answer = good(session, &command)?;
-        answer.text().ok_or_else(|| refused(session, command.trim(), &format!("{} is no text", answer.value)))
+        answer.text().ok_or_else(|| refused(session, command.trim(), &format!("{} is not text", answer.value)))
     };
     Ok(Identity { product: text(gen_a::PRODUCT)?, serial: text(gen_a::SERIAL)?, firmware: text(gen_a::FIRMWARE)? })
 }
@@ -264,7 +264,7 @@ fn good(session: &mut Session, command: &str) -> Result<gen_a::Answer, Trouble> 
 fn number(session: &mut Session, parameter: gen_a::Parameter) -> Result<u32, Trouble> {
     let command = gen_a::read(parameter);
     let answer = good(session, &command)?;
-    answer.number().ok_or_else(|| refused(session, command.trim(), &format!("{} is no number", answer.value)))
+    answer.number().ok_or_else(|| refused(session, command.trim(), &format!("{} is not a number", answer.value)))
 }
 
 fn refused(session: &Session, command: &str, answer: &str) -> Trouble {
@@ -286,7 +286,7 @@ fn check_serial(settings: &Settings, identity: &Identity) -> Result<(), Trouble>
 
 /// Number of readings examined before a sensor counts as open.
 const FIRST_READINGS: usize = 6;
-/// The measured rate may differ from the reported one by this factor, because of jitter and rounding.
+/// Maximum factor between the measured and the reported rate, because of jitter and rounding.
 const RATE_FACTOR: f64 = 1.2;
 const RAW: &str = "its calibration is not loaded (raw)";
 
@@ -318,7 +318,7 @@ fn first_readings(
     let newest = frames[frames.len() - 1];
     if newest.inertial.is_some() != settings.is_inertial() {
         let command = format!("mode {}", settings.mode);
-        return Err(Trouble::Refused { place, command, answer: "frames of another kind".to_owned() });
+        return Err(Trouble::Refused { place, command, answer: "frames in a different format".to_owned() });
     }
     if newest.status & STATUS_BITS & !THROTTLED_BIT != 0 {
         return Err(fault_of(&place, newest.status));
@@ -339,14 +339,17 @@ const THROTTLED_BIT: u16 = 1;
 const INVALID_BIT: u16 = 1 << 2;
 const RAW_BIT: u16 = 1 << 3;
 
-/// The fault that the status bits indicate.
+/// Returns the fault that the status bits indicate.
 fn fault_of(place: &str, status: u16) -> Trouble {
     let (words, cure) = if status & RAW_BIT != 0 {
         (RAW, "Switch the sensor off and on again.")
     } else if status & INVALID_BIT != 0 {
-        ("saturated, shorted or open (invalid)", "Take every load off it; if it stays, the sensor may be damaged.")
+        (
+            "saturated, shorted or open (invalid)",
+            "Remove every load from it; if this persists, the sensor may be damaged.",
+        )
     } else {
-        ("more load than its range (overrange)", "Take the load off the sensor.")
+        ("load above its range (overrange)", "Remove the load from the sensor.")
     };
     Trouble::DeviceFault { place: place.to_owned(), words: words.to_owned(), cure: cure.to_owned() }
 }

@@ -5,14 +5,12 @@ use std::time::{Duration, Instant};
 use super::codec::Decoder;
 use crate::{Trouble, transport::Bytes};
 
-/// Time limits while opening.
 #[derive(Clone, Copy, Debug)]
 pub struct Timeouts {
-    /// First generation: time for the restart that opening the port causes.
+    /// First generation: time for the restart when the port is opened.
     pub boot: Duration,
     /// Time for one answer.
     pub answer: Duration,
-    /// How often the first command is sent.
     pub tries: u32,
     /// First generation: time for a restart of the firmware by command.
     pub init: Duration,
@@ -34,7 +32,7 @@ impl Default for Timeouts {
 }
 
 impl Timeouts {
-    /// For a diagnosis: one second in total, and another one for the start of a first-generation sensor.
+    /// For a diagnosis: one second in total, and another second for the start of a first-generation sensor.
     pub(super) const SHORT: Self = Self {
         boot: Duration::from_secs(1),
         answer: Duration::from_millis(150),
@@ -51,7 +49,7 @@ const NAP: Duration = Duration::from_millis(1);
 const QUIET: Duration = Duration::from_millis(15);
 const FLUSH: Duration = Duration::from_millis(200);
 
-/// A line for commands; what was received on it is kept to explain failures.
+/// A line for commands; received data are kept to explain failures.
 pub(super) struct Session {
     line: Box<dyn Bytes>,
     /// Port or address, for messages.
@@ -59,9 +57,7 @@ pub(super) struct Session {
     pub(super) timeouts: Timeouts,
     heard: Vec<u8>,
     decoder: Decoder,
-    /// Bytes received since the line was opened.
     bytes: u64,
-    /// Number of complete frames among them.
     frames: u64,
 }
 
@@ -72,7 +68,7 @@ impl Session {
         Self { line, place: place.to_owned(), timeouts, heard, decoder, bytes: 0, frames: 0 }
     }
 
-    /// Listens until `found` finds something in what was received since the last command, or until `timeout`.
+    /// Listens until `found` finds an answer in the data received since the last command, or until `timeout`.
     pub(super) fn listen<T>(
         &mut self,
         timeout: Duration,
@@ -92,7 +88,6 @@ impl Session {
         }
     }
 
-    /// Sends a command and waits for its answer.
     pub(super) fn ask<T>(
         &mut self,
         command: &[u8],
@@ -104,7 +99,7 @@ impl Session {
         self.listen(self.timeouts.answer, found)
     }
 
-    /// Discards what is still arriving, for instance from a stream that was just stopped.
+    /// Discards data that are still arriving, for example from a stream that was just stopped.
     pub(super) fn flush(&mut self) -> Result<(), Trouble> {
         let begin = Instant::now();
         let mut heard = begin;
@@ -118,7 +113,7 @@ impl Session {
         Ok(())
     }
 
-    /// Reads what has arrived and counts the frames in it.
+    /// Reads the data that have arrived and counts the frames in them.
     fn take_in(&mut self) -> Result<usize, Trouble> {
         let count = self.line.receive(self.decoder.room()).map_err(|_| self.broken())?;
         let room = self.decoder.room();
@@ -134,7 +129,7 @@ impl Session {
         Ok(count)
     }
 
-    /// Why a command is not answered, judged by everything received. `baud` if the line has a speed.
+    /// Returns the reason why a command is not answered, from all received data. `baud` if the line has a speed.
     pub(super) fn why_no_answer(&self, command: &str, baud: Option<u32>) -> Trouble {
         let place = self.place.clone();
         match baud {
@@ -145,10 +140,12 @@ impl Session {
     }
 
     fn broken(&self) -> Trouble {
-        Trouble::Other { place: self.place.clone(), reason: "the connection broke while it was opened".to_owned() }
+        Trouble::Other {
+            place: self.place.clone(),
+            reason: "the connection broke while the sensor was being opened".to_owned(),
+        }
     }
 
-    /// Returns the line.
     pub(super) fn into_line(self) -> Box<dyn Bytes> {
         self.line
     }

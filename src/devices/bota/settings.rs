@@ -18,7 +18,6 @@ pub enum Transport {
     Socket,
 }
 
-/// Settings of a sensor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -37,11 +36,11 @@ pub struct Settings {
     /// Second generation: frame format; 0 and 1 force and torque, 2 and 3 with the inertial unit.
     #[serde(default = "mode")]
     pub mode: u8,
-    /// Second generation: rate, Hz; one that the sensor supports (10 20 25 50 100 200 250 270 400 500 800 1000 1600
-    /// 2133 3200 3840).
+    /// Second generation: rate, Hz, as supported by the sensor (10 20 25 50 100 200 250 270 400 500 800 1000 1600 2133
+    /// 3200 3840).
     #[serde(default = "rate")]
     pub rate_hz: u32,
-    /// Required serial number (`853` and `SN000853` are the same); any if omitted.
+    /// Required serial number (`853` and `SN000853` are equal); any number if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
 }
@@ -66,13 +65,13 @@ const fn rate() -> u32 {
 const BITS_PER_BYTE: f64 = 10.0;
 
 impl Settings {
-    /// Default settings except for these two.
+    /// Creates default settings except for these two.
     pub fn new(transport: Transport, port: impl Into<String>) -> Self {
         let port = port.into();
         Self { transport, port, baud: baud(), sinc: sinc(), mode: mode(), rate_hz: rate(), serial_number: None }
     }
 
-    /// Expected rate of the readings with these settings, Hz.
+    /// Returns the expected rate of the readings with these settings, Hz.
     pub fn expected_hz(&self) -> f64 {
         match self.transport {
             Transport::Gen0 => gen0::rate_hz(self.sinc),
@@ -80,12 +79,11 @@ impl Settings {
         }
     }
 
-    /// Whether frames contain the inertial unit.
     pub const fn is_inertial(&self) -> bool {
         !matches!(self.transport, Transport::Gen0) && self.mode >= gen_a::MODE_INERTIAL
     }
 
-    /// The submode for the configured rate.
+    /// Returns the submode for the configured rate.
     pub(super) fn submode(&self) -> Option<u32> {
         gen_a::RATES_HZ.iter().position(|rate_hz| *rate_hz == self.rate_hz).map(|place| place as u32)
     }
@@ -99,7 +97,7 @@ impl Settings {
             Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
         };
         if self.port.trim().is_empty() {
-            return refuse("port", "\"\"".to_owned(), "it must name the sensor's device file or address");
+            return refuse("port", "\"\"".to_owned(), "the sensor's device file or address");
         }
         if self.transport == Transport::Gen0 {
             if !gen0::SINC.contains(&self.sinc) {
@@ -119,17 +117,17 @@ impl Settings {
                 Transport::Gen0 => ("sinc", self.sinc.to_string()),
                 Transport::GenA | Transport::Socket => ("rate_hz", self.rate_hz.to_string()),
             };
-            return refuse(key, value, &format!("{} baud carries {fits_hz:.0} readings per second", self.baud));
+            return refuse(key, value, &format!("{} baud can carry {fits_hz:.0} readings per second", self.baud));
         }
         Ok(())
     }
 
-    /// Whether it is a serial device on USB, which has no line speed.
+    /// Returns whether the sensor is a serial device on USB, which has no line speed.
     pub fn is_usb(&self) -> bool {
         self.transport == Transport::GenA && self.port.contains("ttyACM")
     }
 
-    /// Highest rate that the line speed allows, Hz; infinite for network and USB, which have no line speed.
+    /// Returns the highest rate that the line speed allows, Hz; infinite for network and USB, which have no line speed.
     fn line_hz(&self) -> f64 {
         if self.is_usb() || self.transport == Transport::Socket {
             return f64::INFINITY;
@@ -138,13 +136,13 @@ impl Settings {
         f64::from(self.baud) / (BITS_PER_BYTE * bytes as f64)
     }
 
-    /// Whether this is the required serial number, or none is required.
+    /// Returns whether this is the required serial number, or none is required.
     pub(super) fn accepts_serial(&self, serial: &str) -> bool {
         self.serial_number.as_ref().is_none_or(|expected| digits_of(expected) == digits_of(serial))
     }
 }
 
-/// The serial number without the prefix that some programs add.
+/// Returns the serial number without the prefix that some programs add.
 fn digits_of(serial: &str) -> &str {
     let bare = serial.trim();
     bare.strip_prefix("SN").unwrap_or(bare).trim_start_matches('0')

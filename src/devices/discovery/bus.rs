@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use super::{Found, Probe};
 use crate::{Identity, Standing, Trouble, dynamixel};
 
-/// A probe of a bus.
 #[derive(Debug)]
 pub(super) struct BusProbe {
     port: String,

@@ -1,20 +1,19 @@
-//! Tests any driver: opens it as the console would, listens, closes.
+//! Tests any driver: opens it like the console, listens, closes.
 
 use std::time::{Duration, Instant};
 
 use super::{Found, Probe};
 use crate::{Device, Health, Loss, Standing, Trouble};
 
-/// When a device sends data.
+/// Conditions under which a device sends data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speaks {
     /// Continuously, at its own rate: silence is a fault.
     Always,
-    /// Only on a change: silence is normal.
+    /// Only changes: silence is normal.
     OnChange,
 }
 
-/// A probe of a driver.
 pub struct DeviceProbe<F> {
     name: String,
     place: String,
@@ -28,12 +27,12 @@ const LISTEN: Duration = Duration::from_millis(400);
 const NAP: Duration = Duration::from_micros(500);
 
 impl<F> DeviceProbe<F> {
-    /// A probe of the device that `open` opens at `place`.
+    /// Creates a probe of the device that `open` opens at `place`.
     pub fn new(name: impl Into<String>, place: impl Into<String>, speaks: Speaks, open: F) -> Self {
         Self { name: name.into(), place: place.into(), speaks, extra: Duration::ZERO, open }
     }
 
-    /// Allows this much more time than usual, for instance because the device restarts when it is opened.
+    /// Adds this much time to the usual limit, for example because the device restarts when it is opened.
     #[must_use]
     pub fn with_extra(self, extra: Duration) -> Self {
         Self { extra, ..self }
@@ -49,7 +48,7 @@ impl<F> DeviceProbe<F> {
             Standing::Lost(Loss::Device { code }) => Err(Trouble::DeviceFault {
                 place,
                 words: format!("code {code:#x}"),
-                cure: "Look the code up in the device's manual, remove the cause, then switch it off and on."
+                cure: "Look up the code in the device's manual, remove the cause, then switch the device off and on."
                     .to_owned(),
             }),
             _ if self.speaks == Speaks::OnChange || health.readings > 0 => Ok(()),

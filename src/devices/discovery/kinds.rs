@@ -1,4 +1,4 @@
-//! Probes by name. A driver is added with one row.
+//! Probes by name. A new driver needs one row.
 
 use std::time::Duration;
 
@@ -11,17 +11,15 @@ use crate::{
     kinova, ndi,
 };
 
-/// A kind of device.
 pub struct ProbeKind {
-    /// Its name in `nima devices --probe NAME=PLACE`.
+    /// Name in `nima devices --probe NAME=PLACE`.
     pub name: &'static str,
-    /// Format of its address.
+    /// Format of the address.
     pub usage: &'static str,
     /// Creates a probe for an address; the text is empty if none was given.
     pub make: fn(&str) -> Result<Box<dyn Probe>, Trouble>,
 }
 
-/// All kinds of devices.
 pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "spacemouse", usage: "spacemouse[=any|VVVV:PPPP|PATH|emulated:PATH|spacenavd]", make: cap },
     ProbeKind { name: "pedal", usage: "pedal[=any|VVVV:PPPP|PATH|emulated:PATH]", make: pedal },
@@ -44,12 +42,12 @@ pub const KINDS: &[ProbeKind] = &[
     ProbeKind { name: "external-sensor", usage: "external-sensor=ADDRESS:PORT[,FROM]", make: external_sensor },
 ];
 
-/// An invalid address on the command line.
+/// Returns the trouble for an invalid address on the command line.
 fn wrong(kind: &str, place: &str, allowed: &str) -> Trouble {
     Trouble::Setting { key: kind.to_owned(), value: place.to_owned(), allowed: allowed.to_owned() }
 }
 
-/// Port and line speed of `PORT[@BAUD]`; `usual` is the default speed.
+/// Returns port and line speed of `PORT[@BAUD]`; `usual` is the default speed.
 fn line<'a>(kind: &str, place: &'a str, usual: u32) -> Result<(&'a str, u32), Trouble> {
     let (port, baud) = place.rsplit_once('@').unwrap_or((place, ""));
     let baud = if baud.is_empty() { Some(usual) } else { baud.parse().ok() };
@@ -108,7 +106,7 @@ fn bota(kind: &str, transport: Transport, place: &str) -> Result<Box<dyn Probe>,
     Ok(super::probes::sensor(kind, settings))
 }
 
-/// Lists the servos on the bus; nothing is configured, because the settings are not known.
+/// Creates a probe that lists the servos on the bus without configuring them, because their settings are unknown.
 fn dynamixel(place: &str) -> Result<Box<dyn Probe>, Trouble> {
     let (port, baud) = line("dynamixel", place, 1_000_000)?;
     Ok(Box::new(super::bus::BusProbe::new(port, baud)))
@@ -177,7 +175,7 @@ fn external(name: &str, kind: external::Kind, place: &str) -> Result<Box<dyn Pro
     Ok(super::probes::external(name, kind, settings))
 }
 
-/// The probe for `KIND` or `KIND=PLACE`; it is named after the whole text.
+/// Returns the probe for `KIND` or `KIND=PLACE`, named after the whole text.
 ///
 /// # Errors
 /// [`Trouble::Setting`] if the kind is unknown or its address invalid.

@@ -1,8 +1,8 @@
-//! Finds out which devices are plugged in, and why a configured device does not work: each cause with its cure.
+//! Finds out which devices are plugged in, and why a configured device does not work: each cause with its remedy.
 //!
-//! [`Plugged::list`] looks without opening anything. [`diagnose`] tests devices, each on a thread of its own and all at
-//! once, within [`TIMEOUT`]. The real-time thread is not involved; a device in use by a running console gives
-//! [`Trouble::Busy`]. A driver is added with one line in [`KINDS`]: its open function in a [`DeviceProbe`].
+//! [`Plugged::list`] opens no device. [`diagnose`] tests devices in parallel, each on its own thread, within
+//! [`TIMEOUT`]. The real-time thread is not involved; a device in use by a running console gives [`Trouble::Busy`]. A
+//! new driver needs one line in [`KINDS`]: its open function in a [`DeviceProbe`].
 
 mod bus;
 mod device_probe;
@@ -32,30 +32,26 @@ pub use serial::{SerialProbe, frames};
 /// Time limit of a diagnosis; all devices are tested at once.
 pub const TIMEOUT: Duration = Duration::from_millis(900);
 
-/// A device that answered.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Found {
-    /// Identity that it reports.
     pub identity: Identity,
     /// Connected, or lost again while listening.
     pub standing: Standing,
-    /// Readings received while listening.
     pub readings: u64,
-    /// Their rate, Hz; `None` for a device that sends only on a change or when asked.
+    /// Rate of the readings, Hz; `None` for a device that sends only changes or answers.
     pub rate_hz: Option<f64>,
-    /// Readings that never arrived, by the device's numbering.
+    /// Number of readings that never arrived, according to the device's numbering.
     pub lost: u64,
-    /// Frames refused because of checksum, structure or content.
+    /// Number of frames refused because of checksum, structure or content.
     pub damaged: u64,
     /// Response time, s: from opening to the first reading, or the round trip of a connection.
     pub latency_s: Option<f64>,
 }
 
-/// A test of one device or address.
 pub trait Probe: Send {
-    /// What it tests, for the first column of a table.
+    /// Returns the name of the test, for the first column of a table.
     fn name(&self) -> &str;
-    /// Time that it needs in addition to the usual limit.
+    /// Returns the time needed in addition to the usual limit.
     fn extra(&self) -> Duration {
         Duration::ZERO
     }
@@ -66,13 +62,10 @@ pub trait Probe: Send {
     fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble>;
 }
 
-/// Result of a test.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "state")]
 pub enum Outcome {
-    /// The device works.
     Connected(Found),
-    /// The device does not work.
     Trouble {
         #[serde(flatten)]
         trouble: Trouble,
@@ -90,18 +83,16 @@ impl From<Result<Found, Trouble>> for Outcome {
     }
 }
 
-/// The test of one device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnosis {
     pub name: String,
-    /// Duration of the test, s.
     pub took_s: f64,
     #[serde(flatten)]
     pub outcome: Outcome,
 }
 
-/// Runs all tests, each on a thread of its own; returns the results in the given order. A test that does not finish
-/// within `timeout`, plus the additional time that it needs, is reported as such, and its thread is left running.
+/// Runs all tests, each on its own thread; returns the results in the given order. A test that does not finish within
+/// `timeout` plus its additional time is reported as such, and its thread is left running.
 pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis> {
     let begin = Instant::now();
     let started = |probe: Box<dyn Probe>| {
@@ -116,7 +107,7 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis
             let (result, took) = answer.unwrap_or_else(|error| {
                 let reason = match error {
                     mpsc::RecvTimeoutError::Timeout => format!("no answer within {:.1} s", timeout.as_secs_f64()),
-                    mpsc::RecvTimeoutError::Disconnected => "trying it failed".to_owned(),
+                    mpsc::RecvTimeoutError::Disconnected => "the test failed".to_owned(),
                 };
                 (Err(Trouble::Other { place: name.clone(), reason }), begin.elapsed())
             });
@@ -128,7 +119,7 @@ pub fn diagnose(probes: Vec<Box<dyn Probe>>, timeout: Duration) -> Vec<Diagnosis
 type Answer = (Result<Found, Trouble>, Duration);
 
 fn start(mut probe: Box<dyn Probe>, timeout: Duration) -> (String, mpsc::Receiver<Answer>) {
-    /// Subtracted from the time of each test, so that a test that uses all of it can still report its result.
+    /// Subtracted from the time of each test, so that a test that uses all of its time can still report its result.
     const RESERVE: Duration = Duration::from_millis(100);
     let name = probe.name().to_owned();
     let (give, answer) = mpsc::sync_channel(1);

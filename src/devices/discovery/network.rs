@@ -15,7 +15,7 @@ pub struct TcpProbe {
 }
 
 impl TcpProbe {
-    /// For an address `host:port`.
+    /// Creates a probe of an address `host:port`.
     ///
     /// # Errors
     /// [`Trouble::Setting`] if the text is not an address with a port.
@@ -36,11 +36,11 @@ impl Probe for TcpProbe {
     }
 
     fn probe(&mut self, timeout: Duration) -> Result<Found, Trouble> {
-        let unknown = |_| setting(&self.address, "a host that this network knows by that name");
+        let unknown = |_| setting(&self.address, "a host name that exists in this network");
         let resolved = self.address.to_socket_addrs().map_err(unknown)?.next();
         let resolved = resolved.ok_or_else(|| Trouble::Unreachable { place: self.address.clone() })?;
         let begin = Instant::now();
-        // Report the address as it was given, not as it was resolved.
+        // Report the address as given, not as resolved.
         let of = |trouble| match trouble {
             Trouble::Unreachable { .. } => Trouble::Unreachable { place: self.address.clone() },
             Trouble::NobodyListens { .. } => Trouble::NobodyListens { place: self.address.clone() },

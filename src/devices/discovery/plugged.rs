@@ -9,49 +9,40 @@ use serde::Serialize;
 
 use crate::hid;
 
-/// Identity of a USB device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct UsbIds {
     pub vendor: u16,
     pub product: u16,
-    /// Product name.
     pub name: String,
     pub serial: String,
 }
 
-/// A serial port.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SerialPort {
     pub path: PathBuf,
     pub usb: Option<UsbIds>,
 }
 
-/// A human interface device.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct HidNode {
     pub path: PathBuf,
     pub usb: UsbIds,
-    /// What this program can use it for.
+    /// Possible use in this program.
     pub usable_as: Option<&'static str>,
 }
 
 /// A USB device of a known vendor that is neither a serial port nor a human interface device.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UsbDevice {
-    /// Vendor and product id.
     pub usb: UsbIds,
-    /// What this program can use it for.
+    /// Possible use in this program.
     pub usable_as: &'static str,
 }
 
-/// All that was found.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Plugged {
-    /// Serial ports, including those that are not on USB.
     pub serial: Vec<SerialPort>,
-    /// Human interface devices.
     pub hid: Vec<HidNode>,
-    /// Other USB devices.
     pub usb: Vec<UsbDevice>,
     /// Path of Force Dimension's library, if it is installed.
     pub force_dimension_library: Option<PathBuf>,
@@ -68,7 +59,7 @@ fn hexadecimal(path: &Path) -> Option<u16> {
     u16::from_str_radix(&text(path)?, 16).ok()
 }
 
-/// Entries of a folder, sorted by name with numbers in numerical order; empty if there is no such folder.
+/// Returns the entries of a folder, sorted by name with numbers in numerical order; empty if the folder does not exist.
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let mut entries: Vec<_> = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
     entries.sort_by_key(|path| (path.as_os_str().len(), path.clone()));
@@ -86,20 +77,19 @@ impl UsbIds {
         })
     }
 
-    /// The USB device to which a device belongs: the nearest parent folder that describes one.
+    /// Returns the USB device to which a device belongs: the nearest parent folder that describes one.
     fn above(device: &Path) -> Option<Self> {
         let real = device.canonicalize().ok()?;
         real.ancestors().find_map(Self::of_folder)
     }
 
-    /// The USB device of a serial port; the kernel's file system is at `sys`.
+    /// Returns the USB device of a serial port; the kernel's file system is at `sys`.
     pub fn of_port(sys: &Path, port: &Path) -> Option<Self> {
-        // A name given by udev is a symbolic link.
+        // A name from udev is a symbolic link.
         let real = port.canonicalize().unwrap_or_else(|_| port.to_owned());
         Self::above(&sys.join("class/tty").join(real.file_name()?).join("device"))
     }
 
-    /// Text for a table.
     pub fn words(&self) -> String {
         let Self { vendor, product, name, serial } = self;
         let mut words = format!("{vendor:04x}:{product:04x}");
@@ -112,13 +102,12 @@ impl UsbIds {
 }
 
 impl Plugged {
-    /// Lists the devices of this computer.
     pub fn list() -> Self {
         let library = crate::force_dimension::installed_library();
         Self { force_dimension_library: library, ..Self::under(Path::new("/sys")) }
     }
 
-    /// One line for each: where it is, what it can be used for, its identity.
+    /// Returns one line for each device: location, possible use, identity.
     pub fn lines(&self) -> Vec<[String; 3]> {
         let usb = |usb: &Option<UsbIds>| usb.as_ref().map_or_else(|| "not on USB".to_owned(), UsbIds::words);
         let mut lines = Vec::new();
@@ -138,7 +127,7 @@ impl Plugged {
         lines
     }
 
-    /// Lists devices from the kernel's file system at `sys`; does not look for a library.
+    /// Lists devices from the kernel's file system at `sys`; does not search for a library.
     pub fn under(sys: &Path) -> Self {
         let serial = entries(&sys.join("class/tty")).iter().filter_map(|entry| serial_port(entry)).collect();
         let hid = entries(&sys.join("class/hidraw")).iter().filter_map(|entry| hid_node(entry)).collect();
@@ -152,7 +141,7 @@ impl Plugged {
     }
 }
 
-/// A terminal with a device behind it. The kernel also lists ports that the board does not have; their type is 0.
+/// Returns a serial port that has a device. The kernel also lists ports that the board does not have; their type is 0.
 fn serial_port(entry: &Path) -> Option<SerialPort> {
     let device = entry.join("device");
     if !device.exists() || text(&entry.join("type")).is_some_and(|kind| kind == "0") {

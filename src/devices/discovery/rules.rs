@@ -4,18 +4,18 @@ use super::plugged::UsbIds;
 
 /// All rules, as installed.
 pub const RULES: &str = include_str!("../../../assets/70-nima.rules");
-/// Where they are installed; the number must be below 73, the rule file in which systemd grants access to the user.
+/// Installed location; the number must be below 73, the rule file in which systemd grants access to the user.
 pub const FILE: &str = "/etc/udev/rules.d/70-nima.rules";
 
 const RIGHTS: &str = r#"MODE="0660", GROUP="plugdev", TAG+="uaccess""#;
 
-/// The rule for one human interface device, or for all of them.
+/// Returns the rule for one human interface device, or for all of them.
 pub fn of_hidraw(ids: Option<(u16, u16)>) -> String {
     let ids = ids.map(|(vendor, product)| matching(vendor, product)).unwrap_or_default();
     format!(r#"KERNEL=="hidraw*", {ids}{RIGHTS}"#)
 }
 
-/// The rule for one serial port, or for all serial ports on USB.
+/// Returns the rule for one serial port, or for all serial ports on USB.
 pub fn of_serial(ids: Option<&UsbIds>) -> String {
     match ids {
         Some(UsbIds { vendor, product, .. }) => {
@@ -29,7 +29,7 @@ fn matching(vendor: u16, product: u16) -> String {
     format!(r#"ATTRS{{idVendor}}=="{vendor:04x}", ATTRS{{idProduct}}=="{product:04x}", "#)
 }
 
-/// A single command that installs the output of `program devices --udev-rules`.
+/// Returns a single command that installs the output of `program devices --udev-rules`.
 pub fn install_command(program: &str) -> String {
     let quoted = format!("'{}'", program.replace('\'', r"'\''"));
     format!(

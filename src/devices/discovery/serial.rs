@@ -1,4 +1,4 @@
-//! Tests a serial port without knowing which device is on it: permissions, use by other programs, silence, line speed.
+//! Tests a serial port without knowing its device: permissions, use by other programs, silence, line speed.
 
 use std::{
     path::Path,
@@ -19,18 +19,21 @@ pub struct SerialProbe {
     /// First bytes of every frame; empty if unknown. Without them a wrong line speed can be detected only by the port's
     /// count of framing errors, which pseudo-terminals and native USB ports do not have.
     header: Vec<u8>,
-    /// The device sends only when asked, so silence is normal.
+    /// Whether the device sends only answers, so that silence is normal.
     quiet: bool,
 }
 
 /// Listening time, unless the timeout is shorter.
 const LISTEN: Duration = Duration::from_millis(400);
 const NAP: Duration = Duration::from_millis(2);
-/// Longest frame length for which headers are searched.
+/// Longest frame length for which headers are searched: more than eight times the longest frame of the devices here (61
+/// bytes), because unknown devices are examined, too.
 const PERIOD_MAX: usize = 512;
-/// Number of headers at a constant distance that cannot be a coincidence.
+/// Number of headers at a constant distance that cannot be a coincidence: even a header of one byte repeats five times
+/// by chance only once in 2^40.
 const REPEATS: usize = 6;
-/// Number of bytes after which a missing header means a wrong line speed.
+/// Number of bytes after which a missing header means a wrong line speed: longer than the longest frame of the devices
+/// here (61 bytes), so that a correct line has shown a header.
 const ENOUGH: usize = 64;
 
 impl FromStr for SerialProbe {
@@ -64,7 +67,8 @@ fn bytes_of(digits: &str) -> Option<Vec<u8>> {
     (0..digits.len()).step_by(2).map(|i| u8::from_str_radix(&digits[i..i + 2], 16).ok()).collect()
 }
 
-/// Number of frames that begin with `header` at a constant distance; `None` if there are too few to be sure.
+/// Returns the number of frames that begin with `header` at a constant distance; `None` if there are too few to be
+/// certain.
 pub fn frames(bytes: &[u8], header: &[u8]) -> Option<usize> {
     let first = bytes.windows(header.len()).take(PERIOD_MAX).position(|window| window == header)?;
     // The first match may be a coincidence inside a frame; then the next one is tried.
@@ -104,8 +108,8 @@ impl Probe for SerialProbe {
         }
         let place = port.clone();
         let wrong_baud = Err(Trouble::WrongBaud { place: place.clone(), baud: *baud });
-        // A break, or starting in the middle of a byte, gives one or two errors; a wrong speed gives errors all the
-        // time.
+        // A break, or starting in the middle of a byte, causes one or two errors; a wrong speed causes errors
+        // continuously.
         let errors = line.line_errors().zip(errors_before).map_or(0, |(now, before)| now.wrapping_sub(before));
         if errors as usize > 2 + heard.len() / 50 {
             return wrong_baud;

@@ -2,7 +2,7 @@
 
 use super::table::TICK_WRAP;
 
-/// The smallest delay seen rises with time at this rate, larger than the rate error of a servo's clock.
+/// Rate at which the smallest observed delay increases; it exceeds the rate error of a servo's clock.
 const DRIFT: f64 = 0.02;
 
 /// Age of a reading by its time stamp.
@@ -10,7 +10,7 @@ const DRIFT: f64 = 0.02;
 pub(super) enum Age {
     /// Newer than all previous ones.
     New,
-    /// Of the same millisecond as the previous one.
+    /// From the same millisecond as the previous one.
     Same,
     /// Older than a previous one, or delayed too long.
     Old,
@@ -33,7 +33,8 @@ pub(super) struct DeviceClock {
 }
 
 impl DeviceClock {
-    /// A reading delayed by `late_s` more than the fastest ones counts as an answer to an earlier exchange.
+    /// Creates a clock for which a reading delayed by `late_s` more than the fastest ones counts as an answer to an
+    /// earlier exchange.
     pub(super) const fn new(late_s: f64) -> Self {
         Self { last: None, late_s }
     }

@@ -14,13 +14,12 @@ const HEADER: [u8; 4] = [0xFF, 0xFF, 0xFD, 0x00];
 const MARK: [u8; 3] = [0xFF, 0xFF, 0xFD];
 const STUFFING: u8 = 0xFD;
 
-/// Address of all servos at once.
+/// Address of all servos at once (ROBOTIS e-manual, protocol 2.0).
 pub const BROADCAST: u8 = 0xFE;
-/// Instruction byte of a status packet.
+/// Instruction byte of a status packet (ROBOTIS e-manual, protocol 2.0).
 pub const STATUS: u8 = 0x55;
-/// Bytes of a packet besides its parameters.
+/// Bytes of a packet in addition to its parameters.
 pub const OVERHEAD: usize = 10;
-/// Header, id and length.
 const PREFIX: usize = 7;
 
 /// Polynomial 0x8005, not reflected.
@@ -34,22 +33,20 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// With an initial capacity of `room` bytes.
+    /// Creates a buffer with an initial capacity of `room` bytes.
     pub fn new(room: usize) -> Self {
         Self { bytes: Vec::with_capacity(room), begin: 0 }
     }
 
-    /// All packets since [`Outgoing::clear`].
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Removes all packets.
     pub fn clear(&mut self) {
         self.bytes.clear();
     }
 
-    /// Begins a packet behind the existing ones.
+    /// Begins a packet after the existing ones.
     pub fn begin(&mut self, id: u8, instruction: u8) -> &mut Self {
         self.begin = self.bytes.len();
         self.bytes.extend_from_slice(&HEADER);
@@ -69,7 +66,6 @@ impl Outgoing {
         self
     }
 
-    /// Appends a 16-bit number.
     pub fn put_u16(&mut self, number: u16) -> &mut Self {
         self.put(&number.to_le_bytes())
     }
@@ -110,13 +106,13 @@ impl Outgoing {
 /// A complete packet with a correct checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet<'a> {
-    /// Id of its receiver or sender.
+    /// Id of the receiver or sender.
     pub id: u8,
     /// Instruction, or [`STATUS`].
     pub instruction: u8,
     /// Parameters, without stuffing; in a status packet the error byte comes first.
     pub body: &'a [u8],
-    /// Its length on the wire, bytes.
+    /// Length in the protocol, bytes.
     pub wire_bytes: usize,
 }
 
@@ -151,30 +147,29 @@ impl Incoming {
         }
     }
 
-    /// Counters of refused data.
     pub const fn refused(&self) -> Refused {
         self.refused
     }
 
-    /// Whether an incomplete packet is in the buffer.
+    /// Returns whether an incomplete packet is in the buffer.
     pub const fn is_midway(&self) -> bool {
         !self.unread.is_empty()
     }
 
-    /// Discards an incomplete packet; returns the number of bytes discarded, which count as skipped.
+    /// Discards an incomplete packet; returns the number of discarded bytes, which count as skipped.
     pub fn reset(&mut self) -> usize {
         let rest = self.unread.clear();
         self.refused.skipped += rest as u64;
         rest
     }
 
-    /// Accepts as many bytes as there is room for and returns their number. Call [`next`](Self::next) until it returns
-    /// `None`, then pass the remaining bytes.
+    /// Accepts as many bytes as fit and returns their number. Call [`next`](Self::next) until it returns `None`, then
+    /// pass the remaining bytes.
     pub fn feed(&mut self, bytes: &[u8]) -> usize {
         self.unread.feed(bytes)
     }
 
-    /// The next complete packet.
+    /// Returns the next complete packet.
     #[expect(clippy::should_implement_trait, reason = "the packet borrows the buffer, which an iterator's item cannot")]
     pub fn next(&mut self) -> Option<Packet<'_>> {
         loop {
@@ -225,7 +220,8 @@ impl Incoming {
     }
 }
 
-/// Copies `from` without the `FD` after each mark. A mark without one stays as it is: some senders do not stuff.
+/// Copies `from` without the `FD` after each mark. A mark without an `FD` is copied unchanged, because some senders do
+/// not stuff.
 fn unstuff(from: &[u8], to: &mut Vec<u8>) {
     let mut matched = 0;
     for &byte in from {
@@ -247,16 +243,14 @@ fn unstuff(from: &[u8], to: &mut Vec<u8>) {
 /// One servo's block in the answer to a fast read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block<'a> {
-    /// Error byte.
     pub error: u8,
-    /// Servo.
     pub id: u8,
     pub data: &'a [u8],
 }
 
 /// Splits the body of the answer to a fast read into blocks of `data_bytes` each. The checksum of the packet, which is
-/// also that of the last block, has been removed already, and it covers the checksums in between. `None` if the length
-/// does not fit.
+/// also that of the last block, has been removed already, and it covers the checksums in between. Returns `None` if the
+/// length does not fit.
 pub fn blocks(body: &[u8], data_bytes: usize) -> Option<impl Iterator<Item = Block<'_>>> {
     let each = data_bytes + 4;
     let fits = (body.len() + 2).is_multiple_of(each) && !body.is_empty();

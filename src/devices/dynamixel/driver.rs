@@ -1,9 +1,9 @@
 //! Driver of four servos. There is one exchange under way at a time, as fast as bus and caller allow; it never waits.
 //!
 //! An exchange is one `send`: a sync write of the goals (while the torque is on) and a sync read of clock, current,
-//! velocity and position of all four. At intervals it asks one servo for its condition instead (torque, hardware error,
-//! watchdog, voltage, temperature). An exchange that is not answered within a few milliseconds is given up and the next
-//! one starts. The servos count as lost after `silence_s` without a reading (18 ms, more on slow lines: three
+//! velocity and position of all four. At intervals it requests the condition of one servo instead (torque, hardware
+//! error, watchdog, voltage, temperature). An exchange that is not answered within a few milliseconds is abandoned and
+//! the next one starts. The servos count as lost after `silence_s` without a reading (18 ms, more on slow lines: three
 //! exchanges), and on impossible numbers, a hardware error, an expired watchdog, or a torque that went off by itself.
 //! Times in s on the caller's clock.
 
@@ -30,38 +30,34 @@ const CONDITION_FROM: u16 = EEPROM_BYTES;
 const CONDITION_BYTES: usize = (TEMPERATURE.address + 1 - CONDITION_FROM) as usize;
 /// Longest answer: a condition with the largest possible byte stuffing.
 const LONGEST: usize = OVERHEAD + (CONDITION_BYTES + 1) * 4 / 3;
-/// Interval between two condition reads, s.
+/// Interval between two condition reads, s: temperature, voltage and errors of each of the four servos are then read
+/// five times per second, and the exchange of positions hardly loses time. Chosen.
 const CONDITION_EVERY_S: f64 = 0.050;
-/// Allowance for adapter, operating system and servo in addition to the time on the wire, as a share of the time until
-/// the servos count as silent; three attempts fit in.
+/// Allowance for adapter, operating system and servo in addition to the transmission time, as a fraction of the time
+/// until the servos count as silent; three attempts fit in.
 const SLACK: f64 = 0.2;
-/// A reading delayed by this much more than the fastest ones is old; as a share of the time until silence.
+/// A reading delayed by this much more than the fastest ones is old; as a fraction of the time until silence.
 const LATE: f64 = 0.75;
-/// Bytes on the wire in an ordinary exchange, including goals.
+/// Transmitted bytes in an ordinary exchange, including goals.
 const WIRE_BYTES: f64 = 160.0;
-/// Largest plausible velocity, units of 0.229 rpm (98 rad/s).
+/// Maximum plausible velocity, units of 0.229 rpm (98 rad/s).
 const VELOCITY_MAX: i32 = 4095;
-/// Largest plausible position, ticks (256 turns and the largest homing offset).
+/// Maximum plausible position, ticks (256 turns and the largest homing offset).
 const POSITION_MAX: i32 = 2_100_000;
-/// Largest plausible current, units.
+/// Maximum plausible current, units.
 const CURRENT_MAX: i16 = 4095;
 
-/// State of a servo other than its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// Whether the motor is driven.
     pub torque_on: bool,
     /// Hardware errors, and the state of the watchdog.
     pub error: HardwareError,
-    /// Supply voltage, V.
     pub voltage_v: f64,
     pub temperature_c: f64,
 }
 
-/// Result of commanding goals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// Accepted unchanged.
     AsAsked,
     /// Accepted after limiting them to the range of the settings.
     Limited,
@@ -75,7 +71,7 @@ struct Servo {
     current_unit_a: f64,
     limits_ticks: (f64, f64),
     condition: Option<Condition>,
-    /// Whether the torque has been seen on since it was switched on.
+    /// Whether the torque has been reported as on since it was switched on.
     driven: bool,
 }
 
@@ -129,10 +125,10 @@ pub struct Driver<T: Bytes = Serial> {
 enum Torque {
     #[default]
     Off,
-    /// To be switched on in the exchange after the next reading.
+    /// Switched on in the exchange after the next reading.
     Wanted,
     On,
-    /// To be switched off in the next exchange.
+    /// Switched off in the next exchange.
     Ending,
 }
 
@@ -153,10 +149,10 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
     open_with(settings, &Reboots::default())
 }
 
-/// The same, and restarts the servos requested in `reboots`; the driver obeys later requests as well.
+/// Opens the servos and restarts those requested in `reboots`; the driver handles later requests as well.
 ///
 /// # Errors
-/// As [`open`].
+/// The errors of [`open`].
 pub fn open_with(settings: &Settings, reboots: &Reboots) -> Result<Driver, Trouble> {
     open_within(settings, reboots, Timeouts::USUAL)
 }
@@ -164,18 +160,18 @@ pub fn open_with(settings: &Settings, reboots: &Reboots) -> Result<Driver, Troub
 /// Opens for a diagnosis: a servo that does not answer is reported within a second.
 ///
 /// # Errors
-/// As [`open`].
+/// The errors of [`open`].
 pub fn try_open(settings: &Settings) -> Result<Driver, Trouble> {
     open_within(settings, &Reboots::default(), Timeouts::SHORT)
 }
 
-/// Ids and models of the servos that answer on a line; writes nothing.
+/// Returns ids and models of the servos that answer on a line; writes nothing.
 ///
 /// # Errors
 /// [`Trouble`] if the port cannot be opened or closes during the search.
 pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Trouble> {
     if !BAUDS.contains(&baud) {
-        let allowed = format!("servos can have {BAUDS:?}");
+        let allowed = format!("one of {BAUDS:?}");
         return Err(Trouble::Setting { key: "baud".to_owned(), value: baud.to_string(), allowed });
     }
     let mut line = Serial::open(&SerialSettings { port: port.to_owned(), baud })?;
@@ -189,7 +185,7 @@ pub fn who_is_there(port: &str, baud: u32) -> Result<Vec<(u8, &'static str)>, Tr
     Err(why_silent(&mut line, &mut pace, port, baud, heard, Timeouts::SHORT)?)
 }
 
-/// Finds out whether servos that do not answer use another line speed or are missing.
+/// Determines whether servos that do not answer use another line speed or are missing.
 fn why_silent(
     line: &mut Serial,
     pace: &mut Wall,
@@ -225,10 +221,10 @@ fn open_within(settings: &Settings, reboots: &Reboots, timeouts: Timeouts) -> Re
     Err(why_silent(&mut line, &mut pace, &settings.port, settings.baud, heard, timeouts)?)
 }
 
-/// Opens over an existing line with a clock of the caller: runs emulated servos in simulated time.
+/// Opens over an existing line with the caller's clock: runs emulated servos in simulated time.
 ///
 /// # Errors
-/// As [`open`], except for opening the port.
+/// The errors of [`open`], except for opening the port.
 pub fn open_over<T: Bytes>(
     mut line: T,
     pace: &mut impl Pace,
@@ -276,7 +272,7 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// Switches the torque on, holding the present angles, or off. Takes effect with the next exchange.
+    /// Switches the torque on, holding the current angles, or off. Takes effect with the next exchange.
     pub fn set_torque(&mut self, on: bool) {
         self.torque = match (on, self.torque) {
             (true, Torque::On) => Torque::On,
@@ -286,7 +282,6 @@ impl<T: Bytes> Driver<T> {
         };
     }
 
-    /// Whether the torque has been switched on.
     pub fn is_torque_on(&self) -> bool {
         self.torque == Torque::On
     }
@@ -308,18 +303,18 @@ impl<T: Bytes> Driver<T> {
         taken
     }
 
-    /// Restarts the servo with this index: the torque of all goes off, the driver reports itself lost, and the next
-    /// opening with the same [`Reboots`] restarts the servo.
+    /// Restarts the servo with this index: the torque of all servos goes off, the driver reports itself lost, and the
+    /// next opening with the same [`Reboots`] restarts the servo.
     pub fn reboot(&self, index: usize) {
         self.reboots.ask(index);
     }
 
-    /// Latest condition of each servo; updated about five times a second.
+    /// Returns the latest condition of each servo, updated about five times per second.
     pub fn conditions(&self) -> [Option<Condition>; SERVOS] {
         self.servos.map(|servo| servo.condition)
     }
 
-    /// Whether all four answer in one packet (fast sync read).
+    /// Returns whether all four answer in one packet (fast sync read).
     pub const fn uses_fast_sync_read(&self) -> bool {
         self.fast
     }
@@ -347,8 +342,8 @@ impl<T: Bytes> Device for Driver<T> {
 }
 
 impl<T: Bytes> Drop for Driver<T> {
-    /// Switches the torque off, three times, each after the line has fallen quiet, because a packet under way would
-    /// collide with it.
+    /// Switches the torque off, three times, each after the line is quiet, because a packet under way would collide
+    /// with the command.
     fn drop(&mut self) {
         self.outgoing.clear();
         self.put_torque_off();

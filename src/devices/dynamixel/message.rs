@@ -2,7 +2,7 @@
 
 use super::codec::{Outgoing, STATUS};
 
-/// An instruction packet. Lists are kept as bytes of the wire; [`Instruction::decode`] has checked their lengths.
+/// An instruction packet. Lists remain encoded; [`Instruction::decode`] has checked their lengths.
 ///
 /// ```
 /// use nima_devices::dynamixel::{
@@ -22,30 +22,23 @@ use super::codec::{Outgoing, STATUS};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instruction<'a> {
-    /// Ask for model and firmware.
     Ping,
-    /// Read `count` bytes.
     Read {
-        /// First address.
         address: u16,
         count: u16,
     },
-    /// Write immediately.
     Write {
-        /// First address.
         address: u16,
         data: &'a [u8],
     },
-    /// Store a write until [`Instruction::Action`].
     RegWrite {
-        /// First address.
         address: u16,
         data: &'a [u8],
     },
-    /// Carry out the stored write.
     Action,
-    /// Restore the factory values.
-    FactoryReset { keep: Keep },
+    FactoryReset {
+        keep: Keep,
+    },
     /// Restart; the only way to clear a shutdown.
     Reboot,
     /// Reset the count of whole turns.
@@ -57,18 +50,15 @@ pub enum Instruction<'a> {
     },
     /// Read the same registers of several servos.
     SyncRead {
-        /// First address.
         address: u16,
         /// Bytes per servo.
         count: u16,
-        /// Ids of the servos.
         ids: &'a [u8],
         /// All servos answer in one packet.
         fast: bool,
     },
     /// Write the same registers of several servos; see [`sync_items`].
     SyncWrite {
-        /// First address.
         address: u16,
         /// Bytes per servo.
         count: u16,
@@ -89,7 +79,7 @@ pub enum Instruction<'a> {
     },
 }
 
-/// What a factory reset keeps.
+/// Settings that a factory reset keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keep {
     Nothing,
@@ -98,17 +88,13 @@ pub enum Keep {
     IdAndBaud,
 }
 
-/// Why a servo refuses an instruction (low seven bits of the error byte).
+/// Reason why a servo refuses an instruction (low seven bits of the error byte).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Refusal {
-    /// The instruction failed.
     Failed = 1,
-    /// Unknown instruction.
     Instruction = 2,
-    /// Wrong checksum.
     Checksum = 3,
-    /// Value outside the register's range.
     Range = 4,
     /// Too few or too many bytes.
     Length = 5,
@@ -137,21 +123,21 @@ impl Refusal {
         }))
     }
 
-    /// Text for a message.
+    /// Returns the text for a message.
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Failed => "it could not do it",
-            Self::Instruction => "it does not know this instruction",
+            Self::Failed => "the instruction failed",
+            Self::Instruction => "the instruction is unknown",
             Self::Checksum => "the checksum was wrong",
             Self::Range => "the value is out of the register's range",
-            Self::Length => "the length does not fit",
+            Self::Length => "the length is wrong",
             Self::Limit => "the value is beyond a limit set in the servo",
             Self::Access => "the register cannot be written now",
         }
     }
 }
 
-/// Bit of the error byte that is set if there is a hardware error.
+/// Bit of the error byte that is set if there is a hardware error (ROBOTIS e-manual, protocol 2.0).
 pub const ALERT: u8 = 0x80;
 
 /// Key that [`Instruction::ClearTurns`] must carry: 1, "DXL" and 0x22.
@@ -215,7 +201,6 @@ impl<'a> Instruction<'a> {
         }
     }
 
-    /// Its instruction byte.
     pub const fn code(&self) -> u8 {
         match self {
             Self::Ping => 0x01,
@@ -234,7 +219,7 @@ impl<'a> Instruction<'a> {
         }
     }
 
-    /// Appends it to `out` as a packet for `id`.
+    /// Appends the instruction to `out` as a packet for `id`.
     pub fn encode(&self, id: u8, out: &mut Outgoing) {
         out.begin(id, self.code());
         match *self {
@@ -269,18 +254,18 @@ impl<'a> Instruction<'a> {
     }
 }
 
-/// Id and data of each servo in a sync write.
+/// Returns id and data of each servo in a sync write.
 pub fn sync_items(items: &[u8], count: u16) -> impl Iterator<Item = (u8, &[u8])> {
     items.chunks_exact(usize::from(count) + 1).map(|item| (item[0], &item[1..]))
 }
 
-/// Id, address and count of each servo in a bulk read.
+/// Returns id, address and count of each servo in a bulk read.
 pub fn bulk_reads(items: &[u8]) -> impl Iterator<Item = (u8, u16, u16)> + Clone {
     let number = |low, high| u16::from_le_bytes([low, high]);
     items.chunks_exact(5).map(move |item| (item[0], number(item[1], item[2]), number(item[3], item[4])))
 }
 
-/// Id, address and data of each servo in a bulk write; stops at an incomplete item.
+/// Returns id, address and data of each servo in a bulk write; stops at an incomplete item.
 pub fn bulk_writes(mut items: &[u8]) -> impl Iterator<Item = (u8, u16, &[u8])> {
     std::iter::from_fn(move || {
         let (head, rest) = items.split_first_chunk::<5>()?;
@@ -290,7 +275,6 @@ pub fn bulk_writes(mut items: &[u8]) -> impl Iterator<Item = (u8, u16, &[u8])> {
     })
 }
 
-/// Appends a status packet.
 pub fn encode_status(id: u8, error: u8, parameters: &[u8], out: &mut Outgoing) {
     out.begin(id, STATUS).put(&[error]).put(parameters).end();
 }

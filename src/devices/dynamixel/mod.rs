@@ -3,12 +3,15 @@
 //! Angles in rad, zero in the middle of the servo's range; speeds in rad/s; currents in A. [`open`] finds and
 //! configures the servos (return delay 0, operating mode, homing offset, sign, limits, gains, profiles) with the torque
 //! off. [`Driver::poll`](crate::Device::poll) never waits. Each call advances the one exchange under way, so the rate
-//! is that of the caller or of the bus, whichever is lower, and is measured in [`Health`](crate::Health). Only
-//! [`Driver::set_torque`] switches the torque on, at the present angles; while it is on, each servo's bus watchdog
-//! stops it when the bus falls quiet. Dropping the driver switches it off. A servo that has shut itself down ([`Fault`]
-//! gives the reason) starts again only through [`Reboots`].
+//! is limited by the caller or by the bus, and is measured in [`Health`](crate::Health). Only [`Driver::set_torque`]
+//! switches the torque on, at the current angles; while it is on, each servo's bus watchdog stops the servo when the
+//! bus becomes quiet. Dropping the driver switches it off. A servo that has shut itself down ([`Fault`] gives the
+//! reason) starts again only through [`Reboots`].
 //!
 //! The emulated bus with its servos is `nima_simulation::emulators::dynamixel`.
+//!
+//! Sources: the ROBOTIS e-manual (Protocol 2.0, X series) and the manufacturer's SDK (`dynamixel-sdk` 4.1.0), which
+//! `tests/peers` runs against the emulator.
 
 mod clock;
 pub mod codec;

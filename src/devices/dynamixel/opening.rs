@@ -1,8 +1,8 @@
-//! From an open serial line to four configured servos with the torque off. Blocks and allocates; runs on the thread
-//! that opens the device.
+//! Finds and configures four servos on an open serial line, with the torque off. Blocks and allocates; runs on the
+//! thread that opens the device.
 //!
 //! Waits 0.1 s for every answer, up to three times; less in a diagnosis. The EEPROM, which wears out, is read first and
-//! written only where it differs. Everything that is written is read back.
+//! written only where it differs. Every written value is read back.
 
 use std::{
     sync::{
@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{Identity, SERVOS, Trouble, transport::Bytes};
 
-/// How long to wait for answers, and how often to ask.
+/// Time limit for answers, and number of attempts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timeouts {
     answer_s: f64,
@@ -36,16 +36,16 @@ impl Timeouts {
     pub(super) const SHORT: Self = Self { answer_s: 0.04, tries: 2 };
 }
 
-/// Most reads to discard bytes left over from before.
+/// Maximum number of reads to discard old bytes, so that a line that sends without pause cannot hold up the opening.
 pub(super) const REST_READS: usize = 64;
-/// Time for a servo to come back after a reboot, s.
+/// Time for a servo to answer again after a reboot, s.
 const REBOOT_S: f64 = 2.0;
 /// Longest packet while opening: the whole EEPROM, stuffed.
 const LONGEST: usize = 256;
 
-/// Servos that are to be restarted, which is the only way to clear a shutdown. Requested from any thread, carried out
-/// when the servos are opened next: a running driver that finds a request switches the torque off and reports itself
-/// lost, so that it is opened again.
+/// Servos to restart, which is the only way to clear a shutdown. Requests come from any thread and are carried out when
+/// the servos are next opened: a running driver that finds a request switches the torque off and reports itself lost,
+/// so that it is reopened.
 #[derive(Clone, Debug, Default)]
 pub struct Reboots(Arc<AtomicU32>);
 
@@ -55,7 +55,6 @@ impl Reboots {
         self.0.fetch_or(1 << index.min(SERVOS - 1), Ordering::AcqRel);
     }
 
-    /// Whether a request is waiting.
     pub fn is_any(&self) -> bool {
         self.0.load(Ordering::Acquire) != 0
     }
@@ -67,13 +66,11 @@ impl Reboots {
 
 /// Clock for waiting: the system's, or a simulated one in tests.
 pub trait Pace {
-    /// Present time, s; the origin is arbitrary.
+    /// Returns the current time, s; the origin is arbitrary.
     fn now_s(&self) -> f64;
-    /// Waits a short time.
     fn nap(&mut self);
 }
 
-/// The system's clock.
 #[derive(Debug)]
 pub(super) struct Wall(pub(super) Instant);
 
@@ -87,7 +84,6 @@ impl Pace for Wall {
     }
 }
 
-/// Properties of the servos that the driver needs.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub(super) models: [&'static Model; SERVOS],
@@ -95,7 +91,6 @@ pub(super) struct Opened {
     pub(super) fast: bool,
 }
 
-/// A serial line during opening.
 pub(super) struct Session<'a, T, P> {
     line: &'a mut T,
     pace: &'a mut P,
@@ -118,7 +113,6 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Self { line, pace, place, incoming, outgoing, heard: 0, timeouts }
     }
 
-    /// Whether any bytes have arrived.
     pub(super) const fn heard_anything(&self) -> bool {
         self.heard > 0
     }
@@ -157,7 +151,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
             if others.is_empty() {
                 return Err(Trouble::Silent { place });
             }
-            // Ids are all that servos tell of themselves.
+            // Servos identify themselves only by their ids.
             let found = ids_in_words(others.into_iter().map(|(id, _)| id));
             return Err(Trouble::OtherSerial { place, expected: settings.ids_in_words(), found });
         }
@@ -204,14 +198,14 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Err(Trouble::DeviceFault {
             place: self.place.to_owned(),
             words: Fault { id, error }.to_string(),
-            cure: format!("Remove the cause, then give the command to restart servo {id}."),
+            cure: format!("Remove the cause, then restart servo {id} by command."),
         })
     }
 
     /// Switches torque and watchdog off, then writes all settings.
     fn prepare(&mut self, servo: &ServoSettings, model: &Model) -> Result<(), Trouble> {
         let id = servo.id;
-        // A servo whose status return level is below 2 does not answer this write, either.
+        // A servo whose status return level is below 2 does not answer this write either.
         let level = [2];
         self.ask(id, &Instruction::Write { address: table::STATUS_RETURN_LEVEL.address, data: &level })?;
         self.write(id, (table::TORQUE_ENABLE, 0))?;
@@ -241,7 +235,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         Err(Trouble::Absent { place: self.name(id) })
     }
 
-    /// Whether the firmware of all servos supports the fast sync read.
+    /// Returns whether the firmware of all servos supports the fast sync read.
     fn answers_fast(&mut self, settings: &Settings) -> Result<bool, Trouble> {
         let ids = settings.servos.each_ref().map(|servo| servo.id);
         let address = table::TICK.address;
@@ -280,7 +274,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         let answer = self.ask(id, &write)?.ok_or_else(|| self.refused(id, command(), "no answer".to_owned()))?;
         self.accept(id, &answer, command)?;
         let kept = self.read(id, register)?;
-        if kept == value { Ok(()) } else { Err(self.refused(id, command(), format!("it keeps {kept}"))) }
+        if kept == value { Ok(()) } else { Err(self.refused(id, command(), format!("it remains {kept}"))) }
     }
 
     fn accept(&self, id: u8, answer: &Answer, command: impl Fn() -> String) -> Result<(), Trouble> {
@@ -299,7 +293,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         format!("servo {id} on {}", self.place)
     }
 
-    /// Sends the instruction up to a few times until there is an answer.
+    /// Sends the instruction several times until there is an answer.
     fn ask(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<Option<Answer>, Trouble> {
         for _ in 0..self.timeouts.tries {
             let answer = self.once(id, instruction)?;
@@ -315,12 +309,12 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
         self.receive(|packet| packet.instruction == STATUS && (packet.id == id || id == BROADCAST))
     }
 
-    /// Whether any servo answers a broadcast ping.
+    /// Returns whether any servo answers a broadcast ping.
     pub(super) fn anybody(&mut self) -> Result<bool, Trouble> {
         Ok(self.once(BROADCAST, &Instruction::Ping)?.is_some())
     }
 
-    /// Id and model of all servos that answer a broadcast ping.
+    /// Returns id and model of all servos that answer a broadcast ping.
     pub(super) fn everybody(&mut self) -> Result<Vec<(u8, &'static str)>, Trouble> {
         let mut servos: Vec<(u8, &'static str)> = Vec::new();
         self.send(BROADCAST, &Instruction::Ping)?;
@@ -341,7 +335,7 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     }
 
     fn send(&mut self, id: u8, instruction: &Instruction<'_>) -> Result<(), Trouble> {
-        // Bytes that are still waiting belong to earlier instructions.
+        // Pending bytes belong to earlier instructions.
         let mut rest = [0; LONGEST];
         for _ in 0..REST_READS {
             if self.line.receive(&mut rest).map_err(|_| self.gone())? == 0 {
@@ -386,6 +380,6 @@ impl<'a, T: Bytes, P: Pace> Session<'a, T, P> {
     }
 
     fn gone(&self) -> Trouble {
-        Trouble::Other { place: self.place.to_owned(), reason: "the connection is gone".to_owned() }
+        Trouble::Other { place: self.place.to_owned(), reason: "the connection was lost".to_owned() }
     }
 }

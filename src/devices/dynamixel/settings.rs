@@ -10,7 +10,6 @@ use super::table::{
 };
 use crate::{SERVOS, Trouble};
 
-/// Operating mode of a servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OperatingMode {
@@ -23,7 +22,7 @@ pub enum OperatingMode {
     CurrentBasedPosition = 5,
 }
 
-/// Gains of the servo's built-in controllers, in the units of its registers; the defaults are the factory's for the
+/// Gains of the servo's built-in controllers, in the units of its registers; the defaults are the factory values of the
 /// XM430.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -38,9 +37,7 @@ pub struct Gains {
     pub velocity_p: u16,
     /// Velocity, integral.
     pub velocity_i: u16,
-    /// Feed-forward of velocity.
     pub feedforward_1: u16,
-    /// Feed-forward of acceleration.
     pub feedforward_2: u16,
 }
 
@@ -58,13 +55,13 @@ impl Default for Gains {
     }
 }
 
-/// One servo. All angles are of its shaft, zero in the middle of its range (tick 2048), after offset and sign.
+/// One servo. All angles refer to its shaft, zero in the middle of its range (tick 2048), after offset and sign.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ServoSettings {
     /// Id on the bus, 0 to 252.
     pub id: u8,
-    /// Name of the model, such as `XM430-W350`; any known model if omitted.
+    /// Name of the model, such as `XM430-W350`; any supported model if omitted.
     #[serde(default)]
     pub model: Option<String>,
     /// Reverses the direction of rotation (drive mode, bit 0; stored in the servo).
@@ -77,36 +74,32 @@ pub struct ServoSettings {
     /// Operating mode (stored in the servo).
     #[serde(default)]
     pub operating_mode: OperatingMode,
-    /// Lowest goal, rad.
     pub position_min_rad: f64,
-    /// Highest goal, rad.
     pub position_max_rad: f64,
     /// Current limit, A (stored in the servo).
     pub current_limit_a: f64,
-    /// Current with which the goal is held in current-based position mode, A; the current limit if omitted.
+    /// Current for holding the goal in current-based position mode, A; the current limit if omitted.
     #[serde(default)]
     pub goal_current_a: Option<f64>,
-    /// Fastest speed of a move, rad/s; 0 sets no limit.
+    /// Maximum speed of a move, rad/s; 0 sets no limit.
     #[serde(default)]
     pub profile_velocity_rad_s: f64,
-    /// Fastest acceleration of a move, rad/s^2; 0 sets no limit.
+    /// Maximum acceleration of a move, rad/s^2; 0 sets no limit.
     #[serde(default)]
     pub profile_acceleration_rad_s2: f64,
     #[serde(default)]
     pub gains: Gains,
 }
 
-/// Four servos on one serial line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Device file of the adapter, or `COM3`.
     pub port: String,
-    /// Line speed, bit/s; one that the servos support.
+    /// Line speed, bit/s, as supported by the servos.
     pub baud: u32,
-    /// The servos, in the order of the readings.
     pub servos: [ServoSettings; SERVOS],
-    /// Ask all servos for one common answer; if a firmware refuses this, each answers separately.
+    /// Requests one common answer from all servos; if a firmware refuses this, each answers separately.
     #[serde(default = "yes")]
     pub fast_sync_read: bool,
     /// Time after which a servo with torque on stops by itself if it receives nothing, s; 0.02 to 2.54.
@@ -129,16 +122,15 @@ const fn silence_s() -> f64 {
     0.018
 }
 
-/// Highest id.
+/// Highest id (ROBOTIS e-manual, protocol 2.0).
 const ID_MAX: u8 = 252;
-/// Highest profile velocity and acceleration, units.
+/// Highest profile velocity and acceleration, units (ROBOTIS e-manual, X series).
 const PROFILE_MAX: f64 = 32_767.0;
-/// Highest gain.
 const GAIN_MAX: u16 = 16_383;
-/// Turns that an extended position may reach in each direction.
+/// Maximum turns of an extended position in each direction (ROBOTIS e-manual, X series: -256 to 256 revolutions); one
+/// turn is kept, so that the homing offset fits too.
 const TURNS_MAX: f64 = 255.0;
 
-/// A register and the value that it is to have.
 pub(super) type Wanted = (Register, u32);
 
 impl Settings {
@@ -148,44 +140,49 @@ impl Settings {
     /// [`Trouble::Setting`] for the first invalid setting.
     pub fn check(&self) -> Result<(), Trouble> {
         let in_range = |key: &str, value: f64, low: f64, high: f64| {
-            let allowed = format!("it is {low} to {high}");
+            let allowed = format!("{low} to {high}");
             if (low..=high).contains(&value) { Ok(()) } else { Err(impossible(key, &value, allowed)) }
         };
         if !BAUDS.contains(&self.baud) {
-            return Err(impossible("baud", &self.baud, format!("servos can have {BAUDS:?}")));
+            return Err(impossible("baud", &self.baud, format!("one of {BAUDS:?}")));
         }
         in_range("bus_watchdog_s", self.bus_watchdog_s, WATCHDOG_UNIT_S, 127.0 * WATCHDOG_UNIT_S)?;
         in_range("silence_s", self.silence_s, 0.005, 1.0)?;
         for (index, servo) in self.servos.iter().enumerate() {
             servo.check(index)?;
             if self.servos[..index].iter().any(|other| other.id == servo.id) {
-                return Err(impossible(&format!("servos[{index}].id"), &servo.id, "each needs its own".to_owned()));
+                return Err(impossible(
+                    &format!("servos[{index}].id"),
+                    &servo.id,
+                    "use a different id for each servo".to_owned(),
+                ));
             }
         }
         Ok(())
     }
 
-    /// The ids as the servos' identity has them: `ids 1 2 3 4`.
+    /// Returns the ids in the form of the servos' identity: `ids 1 2 3 4`.
     pub fn ids_in_words(&self) -> String {
         ids_in_words(self.servos.iter().map(|servo| servo.id))
     }
 
-    /// Checks that the servos of two instruments have different ids: a cable at the other adapter is told by nothing else.
+    /// Checks that the servos of two instruments have different ids, because nothing else reveals a cable at the wrong
+    /// adapter.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first id that the other one has too.
+    /// [`Trouble::Setting`] for the first common id.
     pub fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
         let has = |id: u8| other.servos.iter().any(|servo| servo.id == id);
         match self.servos.iter().position(|servo| has(servo.id)) {
             None => Ok(()),
             Some(index) => {
-                let allowed = "the servos of right and left need different ids, so that exchanged cables are told";
+                let allowed = "use different ids for the right and left servos, so that swapped cables are detected";
                 Err(impossible(&format!("servos[{index}].id"), &self.servos[index].id, allowed.to_owned()))
             }
         }
     }
 
-    /// The watchdog's time in units of the register.
+    /// Returns the watchdog's time in units of the register.
     pub(super) fn watchdog_units(&self) -> u8 {
         (self.bus_watchdog_s / WATCHDOG_UNIT_S).round().clamp(1.0, 127.0) as u8
     }
@@ -203,7 +200,7 @@ impl ServoSettings {
     fn check(&self, index: usize) -> Result<(), Trouble> {
         let key = |name: &str| format!("servos[{index}].{name}");
         if self.id > ID_MAX {
-            return Err(impossible(&key("id"), &self.id, format!("it is 0 to {ID_MAX}")));
+            return Err(impossible(&key("id"), &self.id, format!("0 to {ID_MAX}")));
         }
         if let Some(name) = &self.model
             && !table::MODELS.iter().any(|model| model.name == name)
@@ -235,18 +232,17 @@ impl ServoSettings {
         ];
         for (name, value, low, high) in ranges {
             if !(low..=high).contains(&value) {
-                return Err(impossible(&key(name), &value, format!("it is {low:.4} to {high:.4}")));
+                return Err(impossible(&key(name), &value, format!("{low:.4} to {high:.4}")));
             }
         }
         let gains = &self.gains;
         let largest = [gains.position_p, gains.position_i, gains.position_d, gains.velocity_p, gains.velocity_i];
         match largest.into_iter().chain([gains.feedforward_1, gains.feedforward_2]).find(|gain| *gain > GAIN_MAX) {
-            Some(gain) => Err(impossible(&key("gains"), &gain, format!("each is 0 to {GAIN_MAX}"))),
+            Some(gain) => Err(impossible(&key("gains"), &gain, format!("0 to {GAIN_MAX} each"))),
             None => Ok(()),
         }
     }
 
-    /// Lowest and highest goal, ticks.
     pub(super) fn limits_ticks(&self) -> (f64, f64) {
         let low = ticks_from_rad(self.position_min_rad).ceil();
         let high = ticks_from_rad(self.position_max_rad).floor();
@@ -257,7 +253,7 @@ impl ServoSettings {
         }
     }
 
-    /// Values for the EEPROM, which keeps them without power; `drive_mode` is the present value.
+    /// Returns the values for the EEPROM, which keeps them without power; `drive_mode` is the current value.
     pub(super) fn eeprom(&self, model: &Model, drive_mode: u8) -> Vec<Wanted> {
         // Profiles are based on velocity, and a goal must not switch the torque on: bits 2 and 3 off.
         let drive_mode = u32::from(drive_mode & !0b1101) | u32::from(self.reverse);
@@ -276,10 +272,10 @@ impl ServoSettings {
         wanted
     }
 
-    /// Values for the RAM, which is lost at every restart.
+    /// Returns the values for the RAM, which is lost at every restart.
     pub(super) fn ram(&self, model: &Model) -> Vec<Wanted> {
         let gains = &self.gains;
-        // Only 0 means "no limit", so a small value must not round down to 0.
+        // Only 0 means "no limit", so a small value must not be rounded to 0.
         let profile = |value: f64, unit: f64| if value > 0.0 { (value / unit).round().max(1.0) as u32 } else { 0 };
         let goal_a = self.goal_current_a.unwrap_or(self.current_limit_a);
         vec![

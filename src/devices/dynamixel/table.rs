@@ -6,9 +6,7 @@ use std::f64::consts::TAU;
 /// A register: address and length in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Register {
-    /// First address.
     pub address: u16,
-    /// Bytes, 1, 2 or 4.
     pub bytes: u16,
 }
 
@@ -18,9 +16,7 @@ const fn register(address: u16, bytes: u16) -> Register {
 
 /// Model number (2 bytes; after it 4 bytes of model information and the firmware version).
 pub const MODEL: Register = register(0, 2);
-/// Version of the firmware.
 pub const FIRMWARE: Register = register(6, 1);
-/// Id on the bus.
 pub const ID: Register = register(7, 1);
 /// Code of the line speed, see [`BAUDS`].
 pub const BAUD: Register = register(8, 1);
@@ -28,7 +24,6 @@ pub const BAUD: Register = register(8, 1);
 pub const RETURN_DELAY: Register = register(9, 1);
 /// Bit 0 reverses the direction, bit 2 selects time-based profiles, bit 3 switches the torque on with a goal.
 pub const DRIVE_MODE: Register = register(10, 1);
-/// See [`super::OperatingMode`].
 pub const OPERATING_MODE: Register = register(11, 1);
 /// Secondary id; writes to it are carried out without an answer.
 pub const SHADOW_ID: Register = register(12, 1);
@@ -36,7 +31,6 @@ pub const SHADOW_ID: Register = register(12, 1);
 pub const HOMING_OFFSET: Register = register(20, 4);
 /// Velocity above which the servo counts as moving.
 pub const MOVING_THRESHOLD: Register = register(24, 4);
-/// Maximum temperature, degrees Celsius.
 pub const TEMPERATURE_LIMIT: Register = register(31, 1);
 /// Maximum supply voltage, units of 0.1 V.
 pub const VOLTAGE_MAX: Register = register(32, 2);
@@ -54,7 +48,6 @@ pub const POSITION_MAX: Register = register(48, 4);
 pub const POSITION_MIN: Register = register(52, 4);
 /// Hardware errors that switch the torque off.
 pub const SHUTDOWN: Register = register(63, 1);
-/// Bytes of the EEPROM.
 pub const EEPROM_BYTES: u16 = 64;
 /// 1: the motor is driven.
 pub const TORQUE_ENABLE: Register = register(64, 1);
@@ -62,7 +55,6 @@ pub const TORQUE_ENABLE: Register = register(64, 1);
 pub const STATUS_RETURN_LEVEL: Register = register(68, 1);
 /// Whether a write waits for the action instruction.
 pub const REGISTERED: Register = register(69, 1);
-/// See [`HardwareError`].
 pub const HARDWARE_ERROR: Register = register(70, 1);
 /// Integral gain of the velocity controller.
 pub const VELOCITY_I: Register = register(76, 2);
@@ -74,31 +66,25 @@ pub const POSITION_D: Register = register(80, 2);
 pub const POSITION_I: Register = register(82, 2);
 /// Proportional gain of the position controller.
 pub const POSITION_P: Register = register(84, 2);
-/// Feed-forward of acceleration.
 pub const FEEDFORWARD_2: Register = register(88, 2);
-/// Feed-forward of velocity.
 pub const FEEDFORWARD_1: Register = register(90, 2);
 /// Units of 20 ms; 0 off, -1 expired.
 pub const BUS_WATCHDOG: Register = register(98, 1);
-/// Goal in PWM mode.
 pub const GOAL_PWM: Register = register(100, 2);
 /// Goal in current mode, limit in current-based position mode.
 pub const GOAL_CURRENT: Register = register(102, 2);
-/// Goal in velocity mode.
 pub const GOAL_VELOCITY: Register = register(104, 4);
-/// Units of 214.577 rev/min^2; 0 is no limit.
+/// Units of 214.577 rev/min^2; 0 sets no limit.
 pub const PROFILE_ACCELERATION: Register = register(108, 4);
-/// Units of 0.229 rpm; 0 is no limit.
+/// Units of 0.229 rpm; 0 sets no limit.
 pub const PROFILE_VELOCITY: Register = register(112, 4);
 /// Ticks.
 pub const GOAL_POSITION: Register = register(116, 4);
 /// Milliseconds, 0 to 32767.
 pub const TICK: Register = register(120, 2);
-/// Whether the servo moves.
 pub const MOVING: Register = register(122, 1);
 /// Bit 0: in position; bit 1: a profile is running; bit 3: following error.
 pub const MOVING_STATUS: Register = register(123, 1);
-/// Present PWM of the motor.
 pub const PRESENT_PWM: Register = register(124, 2);
 /// In the model's unit.
 pub const PRESENT_CURRENT: Register = register(126, 2);
@@ -115,9 +101,9 @@ pub const VOLTAGE: Register = register(144, 2);
 /// Degrees Celsius.
 pub const TEMPERATURE: Register = register(146, 1);
 
-/// Value at which [`TICK`] overflows, ms.
+/// Value at which [`TICK`] overflows, ms (ROBOTIS e-manual, X series).
 pub const TICK_WRAP: i32 = 32_768;
-/// Encoder steps of one turn.
+/// Encoder steps of one turn (ROBOTIS e-manual, X series).
 pub const TICKS_PER_TURN: f64 = 4096.0;
 /// Ticks at zero radians: the middle of the range.
 pub const TICKS_AT_ZERO: f64 = 2048.0;
@@ -125,25 +111,24 @@ pub const TICKS_AT_ZERO: f64 = 2048.0;
 pub const VELOCITY_UNIT_RAD_S: f64 = 0.229 * TAU / 60.0;
 /// One unit of acceleration, 214.577 rev/min^2, in rad/s^2.
 pub const ACCELERATION_UNIT_RAD_S2: f64 = 214.577 * TAU / 3600.0;
-/// One unit of the bus watchdog, s.
+/// One unit of the bus watchdog, s (ROBOTIS e-manual, X series).
 pub const WATCHDOG_UNIT_S: f64 = 0.020;
-/// Value of the bus watchdog once it has expired.
+/// Value of the bus watchdog once it has expired: -1 in eight bits (ROBOTIS e-manual, X series).
 pub const WATCHDOG_EXPIRED: u8 = 0xFF;
 
 /// Line speeds by their code in [`BAUD`].
 pub const BAUDS: [u32; 8] = [9600, 57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 4_500_000];
 
-/// Ticks of an angle of the shaft.
+/// Returns the ticks of an angle of the shaft.
 pub fn ticks_from_rad(angle_rad: f64) -> f64 {
     angle_rad / TAU * TICKS_PER_TURN + TICKS_AT_ZERO
 }
 
-/// Angle of the shaft at `ticks`.
+/// Returns the angle of the shaft at `ticks`.
 pub fn rad_from_ticks(ticks: f64) -> f64 {
     (ticks - TICKS_AT_ZERO) / TICKS_PER_TURN * TAU
 }
 
-/// A model with current measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Model number in the answer to a ping.
@@ -159,7 +144,6 @@ const fn model(number: u16, name: &'static str, current_unit_a: f64, current_max
     Model { number, name, current_unit_a, current_max }
 }
 
-/// Models that the driver supports.
 pub const MODELS: [Model; 8] = [
     model(1000, "XH430-W350", 2.69e-3, 648),
     model(1010, "XH430-W210", 2.69e-3, 648),
@@ -172,12 +156,11 @@ pub const MODELS: [Model; 8] = [
 ];
 
 impl Model {
-    /// The model with this number.
     pub fn numbered(number: u16) -> Option<&'static Self> {
         MODELS.iter().find(|model| model.number == number)
     }
 
-    /// Whether it has the factory values of the small series for 5 V.
+    /// Returns whether the model has the factory values of the small series for 5 V.
     pub const fn is_small(&self) -> bool {
         matches!(self.number, 1190 | 1200)
     }
@@ -190,22 +173,21 @@ pub struct HardwareError(pub u8);
 impl HardwareError {
     /// Text for each bit, lowest first.
     pub const WORDS: [(u8, &'static str); 7] = [
-        (0x01, "input voltage out of its limits"),
+        (0x01, "input voltage outside its limits"),
         (0x04, "overheated"),
         (0x08, "motor encoder failed"),
         (0x10, "electrical shock or too little power"),
         (0x20, "overload"),
-        (Self::TORQUE_GONE, "its torque went off by itself"),
-        (Self::WATCHDOG, "its bus watchdog expired"),
+        (Self::TORQUE_GONE, "the torque went off without a command"),
+        (Self::WATCHDOG, "the bus watchdog expired"),
     ];
     /// Not a bit of register 70: the bus watchdog has expired.
     pub const WATCHDOG: u8 = 0x80;
     /// Not a bit of register 70: the torque went off without a command, as after a restart.
     pub const TORQUE_GONE: u8 = 0x40;
-    /// Overload.
     pub const OVERLOAD: u8 = 0x20;
 
-    /// Whether there is an error.
+    /// Returns whether there is an error.
     pub const fn is_any(self) -> bool {
         self.0 != 0
     }
@@ -231,7 +213,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// The code: the id above the error bits.
+    /// Returns the code: the id above the error bits.
     pub const fn code(self) -> u32 {
         (self.id as u32) << 8 | self.error.0 as u32
     }

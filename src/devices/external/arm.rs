@@ -15,30 +15,27 @@ use crate::{
     ARM_JOINTS, ArmReading, Device, Follower, Health, Identity, Lever, Stamped, Trouble, kinova::limits::Guard,
 };
 
-/// Numbers of an arm beyond these are impossible: rad, rad/s, Nm.
+/// Numbers of an arm beyond these limits are impossible: rad, rad/s, Nm.
 const ANGLE_MAX_RAD: f64 = 100.0;
 const SPEED_MAX_RAD_S: f64 = 50.0;
 const TORQUE_MAX_NM: f64 = 1e4;
 
-/// Whether it follows commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     Resting,
-    /// Asked to follow; it has not told yet that it does.
+    /// Servoing was requested; the arm has not reported it yet.
     Asked,
     Servoing,
     /// Slows down before it is switched off.
     Braking,
 }
 
-/// An open external arm.
 pub struct Arm {
     line: Line,
     guard: Guard,
     mode: Mode,
     joint_rad: Option<[f64; ARM_JOINTS]>,
     last_s: Option<f64>,
-    /// Set when the lever was pulled.
     pulled: Arc<AtomicBool>,
 }
 
@@ -46,12 +43,12 @@ impl Arm {
     /// Waits for the device's program, up to half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of an arm sends and hears.
+    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of an arm sends and receives.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Ok(Self::on(opening::open(Kind::Arm, settings)?, settings))
     }
 
-    /// The same over an open line, with time stamps from 0 on.
+    /// Opens the arm over an existing connection, with time stamps from 0 on.
     #[cfg(test)]
     pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
         settings.check(Kind::Arm)?;
@@ -63,7 +60,7 @@ impl Arm {
         Self { line, guard, mode: Mode::Resting, joint_rad: None, last_s: None, pulled: Arc::default() }
     }
 
-    /// What the arm tells of itself: an arm that has stopped following is not made to follow again by itself.
+    /// Handles the arm's own report: an arm that has stopped following does not resume by itself.
     fn follow(&mut self, on: bool) {
         self.mode = match (self.mode, on) {
             (Mode::Asked, true) => Mode::Servoing,
@@ -82,7 +79,7 @@ impl Arm {
     }
 }
 
-/// The reading in a datagram, if its numbers are possible; whether it servoes is decided by the driver.
+/// Returns the reading in a datagram, if its numbers are possible; the driver sets whether it is servoing.
 fn reading(datagram: &Datagram) -> Option<ArmReading> {
     let of = |first: usize| -> [f64; ARM_JOINTS] { std::array::from_fn(|joint| datagram.numbers[first + joint]) };
     let value = ArmReading {
@@ -130,7 +127,7 @@ impl Device for Arm {
 
 impl Follower for Arm {
     fn enter_servoing(&mut self) {
-        // Nobody knows where to hold an arm that has not told where it is.
+        // An arm that has not reported its position cannot be held there.
         if let (Mode::Resting, Some(joint_rad)) = (self.mode, &self.joint_rad) {
             self.guard.seed(joint_rad);
             self.mode = Mode::Asked;

@@ -8,9 +8,9 @@ use super::settings::Kind;
 pub const MAGIC: [u8; 4] = *b"NIMX";
 /// Version of this format.
 pub const VERSION: u8 = 1;
-/// Longest datagram, bytes: the reading of an arm.
+/// Maximum length of a datagram, bytes: the reading of an arm.
 pub const BYTES_MAX: usize = HEADER_BYTES + NAMES_BYTES + 8 * NUMBERS_MAX + CRC_BYTES;
-/// Most numbers in a datagram: angle, speed and torque of seven joints.
+/// Maximum number of values in a datagram: angle, speed and torque of seven joints.
 pub const NUMBERS_MAX: usize = 21;
 
 const HEADER_BYTES: usize = 48;
@@ -21,9 +21,9 @@ const CRC_BYTES: usize = 4;
 
 /// Bits of the status word.
 pub mod status {
-    /// Reading: force is on, or the arm follows commands. Command: it should be.
+    /// Reading: force is on, or the arm follows commands. Command: the requested state.
     pub const ON: u16 = 1;
-    /// The device has a fault of its own; its code is in the header.
+    /// The device itself reports a fault; its code is in the header.
     pub const FAULT: u16 = 1 << 1;
     /// Sensor: it skips measurements.
     pub const THROTTLED: u16 = 1 << 2;
@@ -45,7 +45,6 @@ pub mod status {
     pub const HAS_ANGULAR_VELOCITY: u16 = 1 << 12;
 }
 
-/// What a datagram is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Message {
     /// From the device.
@@ -69,7 +68,6 @@ impl Message {
         Some(if code & Self::COMMAND == 0 { Self::Reading(kind) } else { Self::Command(kind) })
     }
 
-    /// How many numbers it has.
     pub const fn numbers(self) -> usize {
         match self {
             // Position, orientation (w, x, y, z), velocity, gripper.
@@ -93,28 +91,25 @@ impl Message {
         }
     }
 
-    /// Length of its datagram, bytes.
     pub const fn bytes(self) -> usize {
         HEADER_BYTES + self.names_bytes() + 8 * self.numbers() + CRC_BYTES
     }
 }
 
-/// One datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Datagram {
-    /// What it is.
     pub message: Message,
-    /// The device program's random number: a program that was started again has another one. Commands repeat it.
+    /// The device program's random number, which changes with every restart. Commands repeat it.
     pub session: u32,
     /// Counts the sender's datagrams, by one.
     pub sequence: u32,
-    /// The sender's monotonic clock when it was made, us; never 0.
+    /// The sender's monotonic clock at creation, us; never 0.
     pub time_us: u64,
-    /// `time_us` of the newest datagram that the sender has heard; 0 before the first.
+    /// `time_us` of the newest datagram that the sender has received; 0 before the first.
     pub echo_us: u64,
-    /// Reading: without a command for this long the device switches itself off. Command: the time after which it must, us.
+    /// Reading: time without a command after which the device switches itself off. Command: the maximum of that time,
+    /// us.
     pub watchdog_us: u32,
-    /// See [`status`].
     pub status: u16,
     /// The device's own code of a fault.
     pub fault: u16,
@@ -124,23 +119,19 @@ pub struct Datagram {
     pub product: [u8; PRODUCT_BYTES],
     /// Its serial number, padded with zeros; in readings only.
     pub serial: [u8; SERIAL_BYTES],
-    /// Its numbers, see [`Message::numbers`]; the others are 0.
+    /// The values, see [`Message::numbers`]; the others are 0.
     pub numbers: [f64; NUMBERS_MAX],
 }
 
-/// Why bytes are no datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoDatagram {
-    /// It begins otherwise, or has another length than its kind.
+    /// The first bytes are wrong, or the length does not match the type.
     Shape,
-    /// A datagram of another version of this format.
     Version(u8),
-    /// The checksum is wrong.
     Checksum,
 }
 
 impl Datagram {
-    /// A datagram without content.
     pub const fn blank(message: Message) -> Self {
         Self {
             message,
@@ -158,17 +149,16 @@ impl Datagram {
         }
     }
 
-    /// Whether all of these bits are set.
+    /// Returns whether all of these bits are set.
     pub const fn has(&self, bits: u16) -> bool {
         self.status & bits == bits
     }
 
-    /// Three of its numbers.
     pub const fn three(&self, first: usize) -> [f64; 3] {
         [self.numbers[first], self.numbers[first + 1], self.numbers[first + 2]]
     }
 
-    /// Writes it with its checksum to the beginning of `buffer`; returns its length.
+    /// Writes the datagram with its checksum to the beginning of `buffer`; returns its length.
     pub fn encode(&self, buffer: &mut [u8; BYTES_MAX]) -> usize {
         let length = self.message.bytes();
         let body = length - CRC_BYTES;
@@ -198,7 +188,7 @@ impl Datagram {
         length
     }
 
-    /// Reads exactly one datagram.
+    /// Decodes exactly one datagram.
     ///
     /// # Errors
     /// [`NoDatagram`] if beginning, version, length or checksum are wrong.
@@ -263,13 +253,13 @@ fn part<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     part
 }
 
-/// A name of a datagram as text; what is not printable ASCII is left out.
+/// Returns a name of a datagram as text, without characters other than printable ASCII.
 pub fn name(bytes: &[u8]) -> String {
     let text = bytes.iter().take_while(|byte| **byte != 0).filter(|byte| byte.is_ascii_graphic() || **byte == b' ');
     text.map(|byte| char::from(*byte)).collect::<String>().trim().to_owned()
 }
 
-/// A text as a name of a datagram, cut to its length.
+/// Returns a text as a name of a datagram, truncated to its length.
 pub fn padded<const N: usize>(text: &str) -> [u8; N] {
     let mut bytes = [0; N];
     bytes.iter_mut().zip(text.bytes()).for_each(|(to, byte)| *to = byte);

@@ -15,22 +15,22 @@ use super::{
 };
 use crate::{Device, HandleReading, Health, Identity, Leader, Lever, Stamped, Trouble};
 
-/// Numbers of a handle beyond these are impossible: m, m/s, rad.
+/// Numbers of a handle beyond these limits are impossible: m, m/s, rad.
 const POSITION_MAX_M: f64 = 2.0;
 const SPEED_MAX_M_S: f64 = 20.0;
 const GRIPPER_MAX_RAD: f64 = 3.2;
-/// How far the length of a quaternion may be from 1.
+/// Maximum deviation of a quaternion's length from 1: rounding, even to 32 bits, gives 1e-7, so that a larger deviation
+/// is a mistake in the user's program.
 const UNIT_WITHIN: f64 = 0.01;
 
-/// An open external handle.
 pub struct Handle {
     line: Line,
-    /// Force is wanted; the lever clears it from another thread.
+    /// Whether force is wanted; the lever clears it from another thread.
     wanted: Arc<AtomicBool>,
-    /// What the device has told of its force and was not asked for yet.
+    /// Force state that the device has reported and the loop has not read yet.
     reported: Option<bool>,
     forces_max_n: (f64, f64),
-    /// A command was sent since the last poll.
+    /// Whether a command was sent since the last poll.
     told: bool,
 }
 
@@ -38,12 +38,12 @@ impl Handle {
     /// Waits for the device's program, up to half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a handle sends and hears.
+    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a handle sends and receives.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Ok(Self::on(opening::open(Kind::Handle, settings)?, settings))
     }
 
-    /// The same over an open line, with time stamps from 0 on.
+    /// Opens the handle over an existing connection, with time stamps from 0 on.
     #[cfg(test)]
     pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
         settings.check(Kind::Handle)?;
@@ -64,7 +64,7 @@ fn within(values: &[f64], limit: f64) -> bool {
     values.iter().all(|value| value.abs() <= limit)
 }
 
-/// The reading in a datagram, if its numbers are possible.
+/// Returns the reading in a datagram, if its numbers are possible.
 fn reading(datagram: &Datagram) -> Option<HandleReading> {
     let position_m = datagram.three(0);
     let velocity_m_s = datagram.three(7);
@@ -96,7 +96,7 @@ impl Device for Handle {
 
     fn poll(&mut self, now_s: f64) -> Option<Stamped<HandleReading>> {
         let newest = self.line.receive(now_s, reading);
-        // Where the loop sets no force the program is still answered, with none.
+        // If the loop sets no force, the program still gets an answer, with zero force.
         if !std::mem::take(&mut self.told) {
             self.line.tell(self.is_wanted(), &[]);
         }

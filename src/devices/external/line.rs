@@ -1,7 +1,7 @@
-//! The line to the program of an external device: order and age of what comes, watchdog, and answers.
+//! The connection to the program of an external device: order and age of received datagrams, watchdog, and answers.
 //!
 //! Nothing here waits or allocates. The age of a reading is bounded without a common clock: a reading is fresh if its
-//! sender had heard a command that is itself not older than the limit.
+//! sender had received a command that is itself not older than the limit.
 
 use super::{
     codec::{BYTES_MAX, Datagram, Message, status},
@@ -10,16 +10,18 @@ use super::{
 };
 use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
 
-/// Most datagrams that are read in one tick: 64 ms of a device at 1 kHz, and some 0.1 ms of work.
+/// Maximum number of datagrams read in one tick: 64 ms of a device at 1 kHz, and about 0.1 ms of work.
 pub const READS_MAX: usize = 64;
-/// Damaged or impossible datagrams in a row after which the device is lost.
+/// Number of consecutive damaged or impossible datagrams after which the device is lost: 10 ms at 1 kHz, so that a
+/// single one does no harm.
 const BAD_MAX: u32 = 10;
-/// Commands whose time is kept: the oldest age that is told at 10 kHz is 25 ms.
+/// Number of commands whose time is stored: at 10 kHz this covers an age of 25 ms.
 const SENT: usize = 256;
-/// Time stamps of the loop begin so long after those of opening, us.
+/// Offset of the loop's time stamps after those of opening, us: opening counts from its own zero, and time stamps must
+/// not decrease.
 const OPENING_US: u64 = 1_000_000;
 
-/// When the newest commands were sent, on our clock, us.
+/// Times at which the newest commands were sent, on our clock, us.
 #[derive(Debug)]
 struct Sent {
     times_us: [u64; SENT],
@@ -32,7 +34,7 @@ impl Sent {
         self.count += 1;
     }
 
-    /// The newest command that was sent at or before this time, if it is still known.
+    /// Returns the newest command that was sent at or before this time, if it is still stored.
     fn newest_until(&self, time_us: u64) -> Option<u64> {
         let kept = self.count.min(SENT);
         let mut newest_first = (1..=kept).map(|back| self.times_us[(self.count - back) % SENT]);
@@ -40,20 +42,19 @@ impl Sent {
     }
 }
 
-/// The line to one device.
 pub(super) struct Line {
     datagrams: Box<dyn Datagrams>,
     kind: Kind,
     session: u32,
-    /// Of the newest datagram that was taken.
+    /// Sequence number and time of the newest accepted datagram.
     heard: Option<(u32, u64)>,
-    /// Ours of the newest command.
+    /// Sequence number of our newest command.
     sequence: u32,
     sent: Sent,
     silence_s: f64,
     age_max_us: u64,
     watchdog_us: u32,
-    /// Our time stamps are after this.
+    /// Lower bound of our time stamps.
     begins_us: u64,
     now_us: u64,
     first_s: Option<f64>,
@@ -63,10 +64,9 @@ pub(super) struct Line {
     identity: Identity,
 }
 
-/// What a datagram turned out to be.
 enum Taken<R> {
     Reading(R),
-    /// Late, repeated, out of order, or of another program.
+    /// Late, repeated, out of order, or from another program.
     Stale,
     Damaged,
     Refused,
@@ -74,7 +74,7 @@ enum Taken<R> {
 }
 
 impl Line {
-    /// The line to the program that was met in opening.
+    /// Creates the connection to the program found while opening.
     pub(super) fn new(
         datagrams: Box<dyn Datagrams>,
         kind: Kind,
@@ -110,7 +110,8 @@ impl Line {
         matches!(self.health.standing, Standing::Lost(_))
     }
 
-    /// Reads what has arrived and gives the newest fresh reading; `read` makes it of a datagram, or refuses its numbers.
+    /// Reads the data that have arrived and returns the newest fresh reading; `read` converts a datagram, or refuses
+    /// its numbers.
     pub(super) fn receive<R>(
         &mut self,
         now_s: f64,
@@ -144,7 +145,7 @@ impl Line {
                 return None;
             }
         }
-        // What is read from the middle of a queue is old, whatever it says of itself.
+        // Data from the middle of a queue are old, regardless of their content.
         if is_backlog && newest.take().is_some() {
             self.health.out_of_order += 1;
         }
@@ -172,14 +173,14 @@ impl Line {
         }
         if let Some((sequence, time_us)) = self.heard {
             let ahead = datagram.sequence.wrapping_sub(sequence);
-            // More than half of the range ahead is behind. A sender whose clock stands still repeats itself.
+            // More than half of the range ahead means behind. A sender whose clock stands still repeats itself.
             if ahead == 0 || ahead > u32::MAX / 2 || datagram.time_us <= time_us {
                 return Taken::Stale;
             }
             self.health.lost += u64::from(ahead - 1);
         }
         self.heard = Some((datagram.sequence, datagram.time_us));
-        // A time that is still to come is that of an earlier opening.
+        // A time in the future comes from an earlier opening.
         if !(must_know_us..=self.now_us).contains(&datagram.echo_us) {
             return Taken::Stale;
         }
@@ -223,7 +224,7 @@ impl Line {
         None
     }
 
-    /// Sends a command: whether the device may be on, and its numbers. A device that is lost is told nothing.
+    /// Sends a command: whether the device may be on, and its values. A lost device gets no commands.
     pub(super) fn tell(&mut self, on: bool, numbers: &[f64]) {
         if self.is_lost() {
             return;
@@ -248,19 +249,18 @@ impl Line {
         }
     }
 
-    /// Counts a command that was refused.
     pub(super) const fn refuse_command(&mut self) {
         self.health.refused += 1;
     }
 
-    /// The last command before the line is closed, whatever its state: off.
+    /// Sends the last command before the connection is closed, in any state: off.
     pub(super) fn leave(&mut self) {
         self.health.standing = Standing::Closed;
         self.tell(false, &[]);
     }
 }
 
-/// A command of this kind with these numbers; the missing ones are 0.
+/// Returns a command of this kind with these values; missing ones are 0.
 pub(super) fn command_of(kind: Kind, on: bool, numbers: &[f64]) -> Datagram {
     let mut command = Datagram::blank(Message::Command(kind));
     command.status = if on { status::ON } else { 0 };
@@ -268,7 +268,7 @@ pub(super) fn command_of(kind: Kind, on: bool, numbers: &[f64]) -> Datagram {
     command
 }
 
-/// Whether the device switches itself off in time.
+/// Returns whether the device switches itself off in time.
 pub(super) fn is_watched(datagram: &Datagram, watchdog_us: u32) -> bool {
     (1..=watchdog_us).contains(&datagram.watchdog_us)
 }

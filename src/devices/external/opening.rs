@@ -1,4 +1,4 @@
-//! Meets the program of an external device: the first one that sends a right datagram, and that hears the answer.
+//! Finds the program of an external device: the first one that sends a valid datagram and receives the answer.
 
 use std::{
     thread::sleep,
@@ -15,7 +15,7 @@ use crate::{
     transport::{Datagrams, Udp},
 };
 
-/// How long the first datagram is waited for, and then one that shows that our answer was heard.
+/// Time limit for the first datagram, and then for one that shows that our answer was received.
 const FIRST_MAX: Duration = Duration::from_millis(300);
 const ANSWER_MAX: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_micros(500);
@@ -27,13 +27,13 @@ pub(super) fn open(kind: Kind, settings: &Settings) -> Result<Line, Trouble> {
     meet(Box::new(udp), kind, settings, begins_us())
 }
 
-/// Where our time stamps begin: after all of an earlier opening, which the device's program may still remember.
+/// Returns the start of our time stamps: after all of an earlier opening, which the device's program may still
+/// remember.
 fn begins_us() -> u64 {
     let since_1970 = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     since_1970.map_or(0, |time| time.as_micros() as u64)
 }
 
-/// Meets the device's program over an open socket.
 pub(super) fn meet(
     mut datagrams: Box<dyn Datagrams>,
     kind: Kind,
@@ -58,9 +58,9 @@ pub(super) fn meet(
     if kind.is_driven() && !is_watched(&first, watchdog_us) {
         return Err(Trouble::DeviceFault {
             place,
-            words: format!("its own watchdog is {} ms", f64::from(first.watchdog_us) * 1e-3),
+            words: format!("its watchdog time is {} ms", f64::from(first.watchdog_us) * 1e-3),
             cure: format!(
-                "Let its program switch the device off after {} ms without a command, and tell that time; or raise watchdog_ms in the rig file.",
+                "Let its program switch the device off after {} ms without a command and report that time, or raise watchdog_ms in the rig file.",
                 settings.watchdog_ms
             ),
         });
@@ -98,17 +98,16 @@ fn first_of(datagrams: &mut dyn Datagrams, kind: Kind, settings: &Settings) -> R
     Err(trouble)
 }
 
-/// The end of opening.
 pub(super) struct Met {
     /// The newest datagram of the program.
     pub(super) newest: Datagram,
-    /// Number of our newest answer.
+    /// Sequence number of our newest answer.
     pub(super) sequence: u32,
-    /// Our time stamps are after this, us.
+    /// Lower bound of our time stamps, us.
     pub(super) begins_us: u64,
 }
 
-/// Answers until a datagram shows that the program has heard it.
+/// Answers until a datagram shows that the program has received an answer.
 fn shake_hands(datagrams: &mut dyn Datagrams, first: &Datagram, watchdog_us: u32, begins_us: u64) -> Option<Met> {
     let Message::Reading(kind) = first.message else { return None };
     let begin = Instant::now();

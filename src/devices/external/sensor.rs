@@ -10,10 +10,9 @@ use super::{
 };
 use crate::{Device, ForceReading, ForceStatus, Health, Identity, Stamped, Trouble};
 
-/// Numbers of a sensor beyond this are impossible: N, Nm, m/s^2, rad/s, degrees Celsius.
+/// Numbers of a sensor beyond this limit are impossible: N, Nm, m/s^2, rad/s, degrees Celsius.
 const NUMBER_MAX: f64 = 1e4;
 
-/// An open external force sensor.
 pub struct Sensor {
     line: Line,
 }
@@ -22,12 +21,12 @@ impl Sensor {
     /// Waits for the device's program, up to half a second.
     ///
     /// # Errors
-    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a sensor sends and hears.
+    /// [`Trouble`] if a setting is invalid, the port is in use, or no program of a sensor sends and receives.
     pub fn open(settings: &Settings) -> Result<Self, Trouble> {
         Ok(Self { line: opening::open(Kind::Sensor, settings)? })
     }
 
-    /// The same over an open line, with time stamps from 0 on.
+    /// Opens the sensor over an existing connection, with time stamps from 0 on.
     #[cfg(test)]
     pub(super) fn over(datagrams: Box<dyn crate::transport::Datagrams>, settings: &Settings) -> Result<Self, Trouble> {
         settings.check(Kind::Sensor)?;
@@ -35,7 +34,7 @@ impl Sensor {
     }
 }
 
-/// The reading in a datagram, if its numbers are possible.
+/// Returns the reading in a datagram, if its numbers are possible.
 fn reading(datagram: &Datagram) -> Option<ForceReading> {
     let numbers = &datagram.numbers[..13];
     let possible = numbers.iter().all(|number| number.abs() <= NUMBER_MAX);

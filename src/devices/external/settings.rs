@@ -1,5 +1,3 @@
-//! Settings of an external device in a rig file.
-
 use std::net::{IpAddr, SocketAddr};
 
 use nima_core::kinematics::JointLimits;
@@ -7,22 +5,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::Trouble;
 
-/// What an external device is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A haptic handle.
     Handle,
     /// An arm with the joints of a Gen3.
     Arm,
-    /// A force-torque sensor.
     Sensor,
 }
 
 impl Kind {
-    /// Every kind.
     pub const ALL: [Self; 3] = [Self::Handle, Self::Arm, Self::Sensor];
 
-    /// Its number on the wire.
     pub(super) const fn code(self) -> u8 {
         match self {
             Self::Handle => 1,
@@ -31,7 +24,7 @@ impl Kind {
         }
     }
 
-    /// Its name in messages, with its article.
+    /// Returns the name in messages, with its article.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Handle => "a handle",
@@ -40,49 +33,49 @@ impl Kind {
         }
     }
 
-    /// Whether it moves or pushes something, so that it needs a watchdog of its own.
+    /// Returns whether the device moves or pushes, so that it needs its own watchdog.
     pub(super) const fn is_driven(self) -> bool {
         matches!(self, Self::Handle | Self::Arm)
     }
 }
 
-/// Settings of an external device. Those that its kind does not have must be left out.
+/// Settings of an external device. Settings that its kind does not have must be omitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "external")]
 pub struct Settings {
-    /// Address and port at which this program listens for the device: one for each part.
+    /// Local address and port for the device: a different one for each part.
     pub listen: SocketAddr,
-    /// Address of the computer on which the device's program runs; needed if it is another one than this.
+    /// Address of the computer that runs the device's program; required if it is not this computer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<IpAddr>,
-    /// Required serial number; any if omitted.
+    /// Required serial number; any number if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
-    /// How often its readings should come, Hz: 20 to 10000.
+    /// Expected rate of the readings, Hz: 20 to 10000.
     #[serde(default = "Settings::usual_rate_hz")]
     pub rate_hz: f64,
-    /// It is lost after this time without a fresh reading, ms: 2 to 20.
+    /// Time without a fresh reading after which the device is lost, ms: 2 to 20.
     #[serde(default = "Settings::usual_time_ms")]
     pub silence_ms: f64,
-    /// A reading is fresh if its sender had heard what this program sent so long before, ms: 2 to 20.
+    /// Maximum age of a reading, by the age of the newest command that its sender had received, ms: 2 to 20.
     #[serde(default = "Settings::usual_time_ms")]
     pub age_max_ms: f64,
-    /// Handle and arm: longest watchdog of the device itself, ms: 2 to 100.
+    /// Handle and arm: maximum watchdog time of the device itself, ms: 2 to 100.
     #[serde(default = "Settings::usual_watchdog_ms")]
     pub watchdog_ms: f64,
-    /// Handle: largest force, N, above 0 to 40; 4 if omitted.
+    /// Handle: maximum force, N, above 0 to 40; 4 if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_max_n: Option<f64>,
-    /// Handle: largest force of the gripper, N, 0 to 10; none if omitted.
+    /// Handle: maximum force of the gripper, N, 0 to 10; none if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gripper_max_n: Option<f64>,
-    /// Arm: share of a Gen3's joint speeds that commands may use, above 0 to 1; 0.3 if omitted.
+    /// Arm: fraction of a Gen3's joint speeds that commands may use, above 0 to 1; 0.3 if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_fraction: Option<f64>,
-    /// Arm: the most that a commanded angle may be ahead of the measured one, rad, above 0 to 0.2; 0.05 if omitted.
+    /// Arm: maximum lead of a commanded angle over the measured one, rad, above 0 to 0.2; 0.05 if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lead_rad: Option<f64>,
-    /// Sensor: it has an accelerometer.
+    /// Sensor: whether it has an accelerometer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertial: Option<bool>,
 }
@@ -100,7 +93,6 @@ impl Settings {
         20.0
     }
 
-    /// The usual settings at this address.
     pub const fn at(listen: SocketAddr) -> Self {
         Self {
             listen,
@@ -118,27 +110,25 @@ impl Settings {
         }
     }
 
-    /// Largest force on the hand and on the gripper, N.
+    /// Returns the maximum force on the hand and on the gripper, N.
     pub fn forces_max_n(&self) -> (f64, f64) {
         (self.force_max_n.unwrap_or(4.0), self.gripper_max_n.unwrap_or(0.0))
     }
 
-    /// Limits of an arm's joints: the planner keeps to them, the driver checks them.
+    /// Returns the limits of an arm's joints: the planner keeps to them, the driver checks them.
     pub fn joint_limits(&self) -> JointLimits {
         JointLimits::of_arm(self.speed_fraction.unwrap_or(0.3), self.lead_rad.unwrap_or(0.05))
     }
 
-    /// Whether a sensor has an accelerometer.
     pub fn is_inertial(&self) -> bool {
         self.inertial.unwrap_or(false)
     }
 
-    /// Where it is, for messages.
     pub fn place(&self) -> String {
         format!("UDP {}", self.listen)
     }
 
-    /// The only address from which datagrams are taken.
+    /// Returns the only address from which datagrams are accepted.
     pub(super) fn peer(&self) -> IpAddr {
         self.from.unwrap_or_else(|| self.listen.ip())
     }
@@ -146,7 +136,7 @@ impl Settings {
     /// Checks every value for a device of this kind.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first value that is not possible.
+    /// [`Trouble::Setting`] for the first impossible value.
     pub fn check(&self, kind: Kind) -> Result<(), Trouble> {
         let refuse = |key: &str, value: String, allowed: &str| {
             Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
@@ -162,7 +152,7 @@ impl Settings {
             return refuse("from", value, "the address of the computer on which the device's program runs");
         }
         if self.peer().is_ipv4() != ip.is_ipv4() || self.peer().is_loopback() != ip.is_loopback() {
-            return refuse("from", self.peer().to_string(), "an address from which `listen` can be reached");
+            return refuse("from", self.peer().to_string(), "an address that can reach `listen`");
         }
         let of = |own: Kind, value: Option<f64>| if kind == own { Ok(value) } else { Err(value.is_some()) };
         let ranges = [

@@ -1,4 +1,4 @@
-//! The drivers against a program of a device that lives in the test.
+//! The drivers with a device program that lives in the test.
 
 use nalgebra::Vector3;
 
@@ -21,13 +21,14 @@ fn settings() -> Settings {
 struct Bench {
     wire: MemoryDatagrams,
     next: Datagram,
-    /// The newest command that it has heard.
+    /// The newest command that the program has received.
     heard: Option<Datagram>,
     now_s: f64,
 }
 
 impl Bench {
-    /// With the other end for the driver; two datagrams wait there, of which the second has heard an answer.
+    /// Creates the program, and the other end for the driver. Two datagrams are pending there; the second shows that an
+    /// answer was received.
     fn new(kind: Kind) -> (Self, MemoryDatagrams) {
         let [wire, other] = MemoryDatagrams::pair();
         let next = Datagram {
@@ -66,7 +67,7 @@ impl Bench {
         }
     }
 
-    /// One tick, in which the program hears and sends first.
+    /// Runs one tick, in which the program first receives and sends.
     fn tick<D: Device>(&mut self, device: &mut D) -> Option<D::Reading> {
         self.hear();
         self.send();
@@ -135,7 +136,7 @@ fn a_handle_tells_where_it_is_and_is_given_a_force_within_its_limits() {
     handle.switch_force(true);
     drop(handle);
     bench.hear();
-    assert!(!bench.heard.unwrap().has(status::ON), "whoever closes it switches it off");
+    assert!(!bench.heard.unwrap().has(status::ON), "closing it switches it off");
 }
 
 #[test]
@@ -157,7 +158,7 @@ fn late_repeated_and_exchanged_readings_are_counted_and_never_handed_on() {
         assert_eq!(bench.poll(&mut handle), None, "{count}");
         assert_eq!(handle.health().out_of_order, count as u64 + 1);
     }
-    // Sent in time by its own clock, but by somebody who has not heard for longer than the limit.
+    // Sent in time by its own clock, but by a program that has not received a command for longer than the limit.
     for _ in 0..6 {
         bench.hear();
         bench.next.echo_us = echo_us;
@@ -171,7 +172,7 @@ fn late_repeated_and_exchanged_readings_are_counted_and_never_handed_on() {
     assert_eq!(handle.health().out_of_order, stale + 1);
     assert!(handle.health().readings > accepted && lost(handle.health()).is_none());
     bench.next.sequence += 4;
-    assert!(bench.tick(&mut handle).is_some(), "who hears again is heard again");
+    assert!(bench.tick(&mut handle).is_some(), "a program that receives again is accepted again");
     assert_eq!(handle.health().lost, 4);
 }
 
@@ -235,7 +236,7 @@ fn damaged_impossible_and_faulty_ones_are_told() {
     assert_eq!(handle.health().refused, 10);
     let (mut bench, mut handle) = self::handle();
     bench.next.watchdog_us = 0;
-    assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Implausible), "nobody would switch it off");
+    assert_eq!(run(&mut bench, &mut handle, Bench::send), Some(Loss::Implausible), "it would never be switched off");
     let (mut bench, mut handle) = self::handle();
     bench.next.status = status::FAULT;
     bench.next.fault = 0x1234;
@@ -305,7 +306,7 @@ fn an_arm_follows_only_while_it_tells_so_and_only_within_its_limits() {
     }
     assert!(!bench.heard.unwrap().has(status::ON), "then it is switched off");
 
-    // An arm that stops by itself is not made to follow again.
+    // An arm that stops by itself does not resume.
     arm.enter_servoing();
     for _ in 0..4 {
         tick(&mut bench, &mut arm);
@@ -349,7 +350,7 @@ fn who_must_not_be_let_in_is_told_with_what_to_do() {
     assert!(unwatched.to_string().contains("its own watchdog is 500 ms"), "{unwatched}");
     let other = Settings { serial_number: Some("T-2".to_owned()), ..usual.clone() };
     assert!(matches!(told(Kind::Handle, |_| {}, &other), Trouble::OtherSerial { .. }));
-    // It sends once and never hears.
+    // It sends once and never receives.
     assert!(matches!(told(Kind::Handle, |_| {}, &usual), Trouble::Unheard { .. }));
     let [_silent, end] = MemoryDatagrams::pair();
     assert!(matches!(Handle::over(Box::new(end), &usual), Err(Trouble::NobodySends { .. })));

@@ -20,33 +20,33 @@ use super::{
 };
 use crate::{Device, HandleReading, Health, Identity, Loss, Stamped, Trouble};
 
-/// Time without a reading after which the device is lost, s.
+/// Time without a reading after which the device is lost, s: the limit of every device of the force path, so that no
+/// force is older.
 pub const SILENCE_S: f64 = 0.020;
-/// Capacity of the queues of reports and commands.
+/// Capacity of the queues of reports and commands: 32 ms at the highest rate (2 kHz), so that a late loop loses no
+/// report before the device counts as lost.
 pub(super) const QUEUE: usize = 64;
 const EVENTS: usize = 32;
 /// Time limit for the first reading while opening.
 const FIRST_READING_MAX: Duration = Duration::from_secs(1);
-/// How long dropping waits for the thread; if the library hangs, the thread is then left running.
+/// Time for which dropping waits for the thread; if the library hangs, the thread is then left running.
 const JOIN_MAX: Duration = Duration::from_secs(2);
 
-/// A change of the device's force state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "handle")]
 pub enum HandleEvent {
-    /// Force is on, as requested.
     ForceOn,
     /// Force is off; the cause is [`ForceOffCause::Software`] if this was requested. It stays off until it is enabled
     /// again.
-    ForceOff { cause: ForceOffCause },
+    ForceOff {
+        cause: ForceOffCause,
+    },
     /// Force was requested and did not come on.
     ForceRefused {
-        /// The cause reported by the device.
         cause: ForceOffCause,
     },
 }
 
-/// Counters of the driver since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counters {
     /// Calls of the SDK that the device did not answer in time: by chance, or because this computer is busy.
@@ -55,32 +55,26 @@ pub struct Counters {
     pub failed_calls: u64,
     /// Readings that repeated the last one (`DHD_TIMEGUARD`).
     pub time_guarded: u64,
-    /// Readings with impossible numbers.
     pub implausible: u64,
     /// Forces that the device reduced to the capability of its motors.
     pub saturated: u64,
     /// Cycles in which zero was applied because the newest force command was too old.
     pub stale_commands: u64,
-    /// Cycles that started too late.
     pub late_cycles: u64,
-    /// How often the device switched its force off by itself.
+    /// Number of times that the device switched its force off by itself.
     pub force_cut: u64,
 }
 
-/// Result of a force command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceAnswer {
     Taken,
-    /// Reduced to the limits.
     Clamped,
-    /// Not finite: zero is applied.
     NotFinite,
-    /// The queue is full because the device's thread hangs; the force ends when the last command expires and by the
+    /// The queue is full because the device's thread hangs; the force ends when the last command expires, or by the
     /// watchdog.
     Full,
 }
 
-/// An open omega.7.
 #[derive(Debug)]
 pub struct Driver {
     identity: Identity,
@@ -106,7 +100,7 @@ struct Opened {
 }
 
 /// Opens a device: loads the library, opens and configures the device on the thread that will own it, and waits for the
-/// first reading. Afterwards its brakes are on (or it is free, depending on the settings), without force.
+/// first reading. Afterwards the brakes are on (or the handle is free, depending on the settings), without force.
 ///
 /// # Errors
 /// [`Trouble`] if a setting is invalid, the library is missing or unusable, or the device is missing, in use or not
@@ -184,14 +178,14 @@ impl Driver {
         self.shared.force_wanted.store(false, Ordering::Release);
     }
 
-    /// For emergencies: a function for another thread that switches force off and brakes on within a cycle of the
-    /// device's thread.
+    /// For emergencies: returns a function for another thread that switches force off and brakes on within a cycle of
+    /// the device's thread.
     pub fn lever(&self) -> impl FnMut() + Send + 'static {
         let shared = Arc::clone(&self.shared);
         move || shared.force_wanted.store(false, Ordering::Release)
     }
 
-    /// Whether force is requested; becomes false when the device switches it off.
+    /// Returns whether force is requested; becomes false when the device switches it off.
     pub fn is_force_wanted(&self) -> bool {
         self.shared.force_wanted.load(Ordering::Acquire)
     }
@@ -220,30 +214,27 @@ impl Driver {
         if self.commands.try_send(command).is_err() {
             return ForceAnswer::Full;
         }
-        // Without a lock, which a channel that is waited for would take.
+        // Without a lock, which a channel with a waiting receiver would take.
         if let Some(thread) = &self.thread {
             thread.thread().unpark();
         }
         answer
     }
 
-    /// The next event, oldest first.
     pub fn take_event(&self) -> Option<HandleEvent> {
         self.events.try_recv().ok()
     }
 
-    /// Status in the newest report.
     pub const fn status(&self) -> &Status {
         &self.status
     }
 
-    /// Counters in the newest report.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// The device's velocity threshold (in its own unit), which this driver never changes; `None` if the device does
-    /// not report it.
+    /// Returns the device's velocity threshold (in its own unit), which this driver never changes; `None` if the device
+    /// does not report it.
     pub const fn velocity_threshold(&self) -> Option<u32> {
         self.velocity_threshold
     }
@@ -316,7 +307,6 @@ impl Drop for Driver {
 }
 
 impl Identity {
-    /// Identity of an omega.7.
     pub(super) fn of_handle(kind: Kind, name: Option<String>, serial: Option<u16>, firmware: Option<f64>) -> Self {
         Self {
             product: name.unwrap_or_else(|| kind.name()),

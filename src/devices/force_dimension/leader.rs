@@ -11,7 +11,7 @@ impl Leader for Driver {
     }
 
     fn set_force(&mut self, force_n: Vector3<f64>, gripper_n: f64) {
-        // A force that was limited or refused shows in the counters; the next tick sets it again.
+        // The counters show a force that was limited or refused; the next tick sets it again.
         Self::set_force(self, force_n, gripper_n);
     }
 

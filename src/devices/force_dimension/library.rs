@@ -2,7 +2,7 @@
 //! found where it may be installed. Emulated handle: the replacement library that the program provides
 //! ([`provide_stand_in`]).
 //!
-//! A real handle never uses a replacement library, wherever one may be, and an emulated handle never the
+//! A real handle never uses a replacement library, wherever one may be installed, and an emulated handle never uses the
 //! manufacturer's.
 
 use std::{
@@ -17,10 +17,8 @@ use super::{
 };
 use crate::Trouble;
 
-/// A library to try.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Candidate {
-    /// An existing file.
     File(PathBuf),
     /// A name for the system's search.
     Name(&'static str),
@@ -42,7 +40,7 @@ const FILES: &[&str] = &["libdrd.", "libdhd."];
 #[cfg(not(any(target_os = "windows", target_os = "macos")))]
 const FILES: &[&str] = &["libdrd.so", "libdhd.so"];
 
-/// Folder of the library within the SDK.
+/// Returns the folder of the library within the SDK.
 fn within_sdk() -> PathBuf {
     if cfg!(target_os = "windows") {
         PathBuf::from("bin")
@@ -53,7 +51,7 @@ fn within_sdk() -> PathBuf {
     }
 }
 
-/// The folders to search, the most specific first; `variable` reads the environment.
+/// Returns the folders to search, the most specific first; `variable` reads the environment.
 fn folders(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<PathBuf>, Vec<PathBuf>) {
     let sdk = ["FDSDK", "FORCEDIM_SDK"].into_iter().filter_map(&variable).map(|sdk| sdk.join(within_sdk())).collect();
     let mut system = Vec::new();
@@ -64,13 +62,13 @@ fn folders(variable: impl Fn(&str) -> Option<PathBuf>) -> (Vec<PathBuf>, Vec<Pat
     (sdk, system)
 }
 
-/// The numbers in a file name, for comparing versions: 3.17 is newer than 3.9.
+/// Returns the numbers in a file name, for comparing versions: 3.17 is newer than 3.9.
 fn version(path: &Path) -> Vec<u32> {
     let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     name.split('.').filter_map(|part| part.parse().ok()).collect()
 }
 
-/// The newest library in a folder.
+/// Returns the newest library in a folder.
 fn newest(folder: &Path, beginning: &str) -> Option<PathBuf> {
     let here = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
     let fits = |path: &PathBuf| {
@@ -80,7 +78,7 @@ fn newest(folder: &Path, beginning: &str) -> Option<PathBuf> {
     here.filter(fits).max_by_key(|path| version(path))
 }
 
-/// The libraries to try, and a list of them for a message.
+/// Returns the libraries to try, and a list of them for a message.
 fn candidates() -> (Vec<Candidate>, String) {
     search(|name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from))
 }
@@ -111,7 +109,6 @@ pub fn provide_stand_in(sdk: &'static Sdk) {
     STAND_IN.get_or_init(|| sdk);
 }
 
-/// The library for a handle.
 pub(super) fn of(settings: &Settings) -> Result<&'static Sdk, Trouble> {
     let sdk = match (&settings.library, settings.emulator) {
         (Some(path), _) if !path.is_file() => return Err(missing(path.display().to_string())),
@@ -130,11 +127,14 @@ pub(super) fn of(settings: &Settings) -> Result<&'static Sdk, Trouble> {
 }
 
 fn no_stand_in() -> Trouble {
-    unusable("(within this program)", "this program was built without the stand-in of emulated handles".to_owned())
+    unusable(
+        "(within this program)",
+        "this program was built without the replacement library for emulated handles".to_owned(),
+    )
 }
 
-/// The first usable manufacturer's library. Replacement libraries found on the way (in a build folder that the system
-/// searches) are skipped.
+/// Returns the first usable library of the manufacturer. Replacement libraries found on the way (in a build folder that
+/// the system searches) are skipped.
 fn installed() -> Result<&'static Sdk, Trouble> {
     let (candidates, searched) = candidates();
     for candidate in &candidates {
@@ -154,7 +154,7 @@ fn installed() -> Result<&'static Sdk, Trouble> {
     Err(missing(searched))
 }
 
-/// Path of the library that would be loaded, if it is a file. The library is not loaded.
+/// Returns the path of the library that would be loaded, if it is a file. The library is not loaded.
 pub fn installed_library() -> Option<PathBuf> {
     let real = |path: &PathBuf| path.is_file() && !is_stand_in_file(path);
     let by_linker = |name: &str| linker_folders().into_iter().map(|folder| folder.join(name)).find(real);
@@ -164,13 +164,13 @@ pub fn installed_library() -> Option<PathBuf> {
     })
 }
 
-/// Recognised by a symbol that only a replacement library has.
+/// Returns whether a file is a replacement library, recognised by a symbol that only such a library has.
 fn is_stand_in_file(path: &Path) -> bool {
     let symbol = STAND_IN_SYMBOL.as_bytes();
     std::fs::read(path).is_ok_and(|bytes| bytes.windows(symbol.len()).any(|window| window == symbol))
 }
 
-/// Folders of the system's search.
+/// Returns the folders of the system's search.
 fn linker_folders() -> Vec<PathBuf> {
     let named = env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
     let mut folders: Vec<_> = env::split_paths(&named).filter(|path| !path.as_os_str().is_empty()).collect();

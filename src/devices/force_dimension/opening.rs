@@ -1,4 +1,4 @@
-//! From a loaded library to a configured device; every failure has its cause.
+//! Opens and configures a device with a loaded library; every failure has its cause.
 
 use nima_core::Side;
 
@@ -20,7 +20,6 @@ pub(super) struct Opened {
     pub(super) velocity_threshold: Option<u32>,
 }
 
-/// Its name in messages.
 pub(super) fn place(settings: &Settings) -> String {
     match settings.serial {
         Some(serial) => format!("omega.7 with serial number {serial}"),
@@ -28,7 +27,6 @@ pub(super) fn place(settings: &Settings) -> String {
     }
 }
 
-/// Opens, checks and configures the device.
 pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Trouble> {
     let place = place(settings);
     let device = sdk.open(settings.serial).map_err(|error| not_opened(sdk, &place, error))?;
@@ -37,11 +35,11 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
         command: command.to_owned(),
         answer: error.words().to_owned(),
     };
-    let kind = Kind::of(device.kind().map_err(|error| refused("to tell its type", error))?);
+    let kind = Kind::of(device.kind().map_err(|error| refused("to report its type", error))?);
     let Kind::Omega7 { left_handed } = kind else {
         return Err(Trouble::WrongProduct { place, expected: "omega.7".to_owned(), found: kind.name() });
     };
-    let serial = device.serial().map_err(|error| refused("to tell its serial number", error))?;
+    let serial = device.serial().map_err(|error| refused("to report its serial number", error))?;
     if settings.serial.is_some_and(|wanted| wanted != serial) {
         let found = format!("omega.7 with serial number {serial}");
         return Err(Trouble::WrongProduct { expected: place.clone(), place, found });
@@ -50,7 +48,7 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
     if settings.hand.is_some_and(|wanted| wanted != hand) {
         return Err(Trouble::OtherHand { place, hand: hand.word().to_owned() });
     }
-    check(&place, &device.status().map_err(|error| refused("to tell its status", error))?)?;
+    check(&place, &device.status().map_err(|error| refused("to report its status", error))?)?;
     // Brakes first: a handle must not push while it is configured.
     device.stop().map_err(|error| refused("to stop", error))?;
     device.set_watchdog(settings.watchdog_steps()).map_err(|error| refused("the watchdog", error))?;
@@ -58,7 +56,7 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
         Err(error) if !error.is_missing_feature() => Err(refused(command, error)),
         _ => Ok(()),
     };
-    optional("the greatest force", device.set_force_max(settings.force_max_n))?;
+    optional("the maximum force", device.set_force_max(settings.force_max_n))?;
     optional("gravity compensation", device.set_gravity_compensation(settings.gravity_compensation))?;
     optional("the gripper as a button", device.emulate_button(settings.gripper_is_a_button))?;
     let identity = Identity::of_handle(kind, device.name(), Some(serial), device.firmware().ok());
@@ -66,11 +64,11 @@ pub(super) fn open(sdk: &'static Sdk, settings: &Settings) -> Result<Opened, Tro
     Ok(Opened { device, identity, left_handed, velocity_threshold })
 }
 
-/// Most handles that are looked for.
+/// Maximum number of handles in a search.
 const HANDLES_MAX: usize = 8;
 
-/// Serial number and identity of every handle that no program has open. Each is opened for a moment, with its brakes
-/// on; the one that `settings` names does not matter, its library and its emulator do.
+/// Returns serial number and identity of every handle that is not open in another program. Each is opened for a moment,
+/// with its brakes on; the serial number in `settings` is ignored, its library and its emulator are used.
 ///
 /// # Errors
 /// [`Trouble`] if the library is missing or unusable.
@@ -78,7 +76,7 @@ pub fn attached(settings: &Settings) -> Result<Vec<(u16, Identity)>, Trouble> {
     let sdk = super::library::of(settings)?;
     let look = move || {
         super::sdk::prepare_thread();
-        // All stay open until the last one is found: the library opens any that is free.
+        // All stay open until the last one is found, because the library opens any free handle.
         let mut open = Vec::new();
         while open.len() < HANDLES_MAX
             && let Ok(device) = sdk.open(None)
@@ -97,18 +95,17 @@ pub fn attached(settings: &Settings) -> Result<Vec<(u16, Identity)>, Trouble> {
     thread.join().map_err(|_| failed())
 }
 
-/// Checks that its status allows its use.
 fn check(place: &str, status: &Status) -> Result<(), Trouble> {
     if status.reset {
         let place = place.to_owned();
         let mode = "reset (calibration)".to_owned();
-        let cure = "Put the handle to its rest position and press the button on the base, then wait.".to_owned();
+        let cure = "Put the handle into its rest position, press the button on the base, then wait.".to_owned();
         return Err(Trouble::NotReady { place, mode, cure });
     }
     status.loss().map_or(Ok(()), |loss| Err(lost_at_once(place, loss)))
 }
 
-/// For a device that was lost before its first reading.
+/// Returns the trouble for a device that was lost before its first reading.
 pub(super) fn lost_at_once(place: &str, loss: Loss) -> Trouble {
     let place = place.to_owned();
     match loss {
@@ -117,13 +114,13 @@ pub(super) fn lost_at_once(place: &str, loss: Loss) -> Trouble {
         Loss::Corrupt => Trouble::Other { place, reason: "exchanges over USB fail".to_owned() },
         Loss::Implausible => Trouble::DeviceFault {
             place,
-            words: "it tells impossible positions".to_owned(),
+            words: "it reports impossible positions".to_owned(),
             cure: "Switch it off and on, and calibrate it with the manufacturer's program.".to_owned(),
         },
         Loss::Device { code } => Trouble::DeviceFault {
             place,
             words: format!("{} (code {code})", fault_words(code)),
-            cure: "Switch it off and on; if it stays, calibrate it with the manufacturer's program.".to_owned(),
+            cure: "Switch it off and on; if this persists, calibrate it with the manufacturer's program.".to_owned(),
         },
     }
 }
@@ -143,8 +140,8 @@ fn not_opened(sdk: &Sdk, place: &str, error: SdkError) -> Trouble {
     }
 }
 
-/// Whether a device of this manufacturer is on USB. Linux lists all devices, even those that the user may not open.
-/// False on other systems.
+/// Returns whether a device of this manufacturer is on USB. Linux lists all devices, even those that the user may not
+/// open. False on other systems.
 fn is_on_usb() -> bool {
     let Ok(devices) = std::fs::read_dir("/sys/bus/usb/devices") else { return false };
     let vendor = |entry: std::fs::DirEntry| std::fs::read_to_string(entry.path().join("idVendor"));

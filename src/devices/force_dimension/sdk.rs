@@ -26,7 +26,7 @@ use nima_files::quoted;
 use super::status::{ENTRIES, SdkError, Status, Success};
 use crate::Trouble;
 
-/// Its name in messages.
+/// Name in messages.
 pub(super) const NAME: &str = "Force Dimension SDK (libdrd or libdhd, 3.16 or newer)";
 /// The oldest version whose status array has the entries that are decoded here.
 const VERSION_MIN: (c_int, c_int) = (3, 16);
@@ -43,10 +43,9 @@ pub struct Sdk {
 /// Loaded libraries by path.
 static LOADED: Mutex<Vec<(PathBuf, &'static Sdk)>> = Mutex::new(Vec::new());
 
-/// A position (m) and a rotation matrix by rows.
 pub(super) type Pose = ([f64; 3], [f64; 9]);
 
-/// The library is installed but not usable.
+/// Opens a library; the error is the system's text.
 pub(super) fn unusable(path: &str, reason: String) -> Trouble {
     Trouble::SdkUnusable { name: NAME.to_owned(), path: path.to_owned(), reason }
 }
@@ -74,7 +73,8 @@ pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Troubl
     let functions = SdkFunctions::of(&library);
     let functions = functions.map_err(|symbol| unusable(&place, format!("it has no symbol {symbol}")))?;
     let sdk = Sdk { path: place.clone().into(), functions, opening: Mutex::new(()) };
-    // Forgotten, so that it is never unloaded. A library that was refused above is unloaded; nothing of it runs.
+    // Forgotten, so that it is never unloaded. A library that was refused above is unloaded, because none of its code
+    // runs.
     std::mem::forget(library);
     let [major, minor, release, revision] = sdk.version();
     if (major, minor) < VERSION_MIN {
@@ -86,17 +86,16 @@ pub(super) fn keep(path: &Path, library: Library) -> Result<&'static Sdk, Troubl
 }
 
 impl Sdk {
-    /// Functions linked into this program; `name` takes the place of the library's file in messages.
+    /// Creates an SDK from functions linked into this program; `name` replaces the library's file in messages.
     pub const fn linked(name: &'static str, functions: SdkFunctions) -> Self {
         Self { path: Cow::Borrowed(name), functions, opening: Mutex::new(()) }
     }
 
-    /// Path that it was loaded from.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
 
-    /// Whether it emulates devices and is not the manufacturer's.
+    /// Returns whether the library emulates devices and is not the manufacturer's.
     pub(super) const fn is_stand_in(&self) -> bool {
         self.functions.emulate_handle.is_some()
     }
@@ -110,7 +109,6 @@ impl Sdk {
         Success::of(code).ok_or_else(|| self.last_error())
     }
 
-    /// Version of the SDK.
     pub(super) fn version(&self) -> [c_int; 4] {
         let mut numbers = [0; 4];
         let [major, minor, release, revision] = &mut numbers;
@@ -125,17 +123,16 @@ impl Sdk {
         let function = self
             .functions
             .emulate_handle
-            .ok_or_else(|| refuse("it is not the stand-in that an emulated handle needs"))?;
-        let text = CString::new(address).map_err(|_| refuse("the emulated handle's address has a zero in it"))?;
+            .ok_or_else(|| refuse("it is not the replacement library that an emulated handle needs"))?;
+        let text = CString::new(address).map_err(|_| refuse("the emulated handle's address contains a zero byte"))?;
         // SAFETY: a C string that lives through the call.
         if unsafe { function(text.as_ptr()) } == 0 {
             Ok(())
         } else {
-            Err(refuse("it does not understand the emulated handle's address"))
+            Err(refuse("it cannot parse the emulated handle's address"))
         }
     }
 
-    /// Number of connected devices.
     pub(super) fn device_count(&self) -> i32 {
         // SAFETY: no arguments.
         unsafe { (self.functions.device_count)() }
@@ -183,7 +180,6 @@ impl OpenDevice {
         self.sdk.checked(code)
     }
 
-    /// Serial number.
     pub(super) fn serial(&self) -> Result<u16, SdkError> {
         let mut serial = 0;
         // SAFETY: one unsigned short that lives through the call.
@@ -191,14 +187,13 @@ impl OpenDevice {
         Ok(serial)
     }
 
-    /// Number of its type (`DHD_DEVICE_*`).
+    /// Returns the number of the device type (`DHD_DEVICE_*`).
     pub(super) fn kind(&self) -> Result<i32, SdkError> {
         // SAFETY: no pointers.
         let kind = unsafe { (self.sdk.functions.kind)(self.id) };
         if kind < 0 { Err(self.sdk.last_error()) } else { Ok(kind) }
     }
 
-    /// Its name.
     pub(super) fn name(&self) -> Option<String> {
         // SAFETY: no pointers go in.
         let name = unsafe { (self.sdk.functions.name)(self.id) };
@@ -206,7 +201,6 @@ impl OpenDevice {
         (!name.is_null()).then(|| quoted(&unsafe { CStr::from_ptr(name) }.to_string_lossy()))
     }
 
-    /// Firmware version.
     pub(super) fn firmware(&self) -> Result<f64, SdkError> {
         let mut version = 0.0;
         // SAFETY: one double that lives through the call.
@@ -214,7 +208,6 @@ impl OpenDevice {
         Ok(version)
     }
 
-    /// Status.
     pub(super) fn status(&self) -> Result<Status, SdkError> {
         // Longer than the array of any version of the SDK.
         let mut entries = [0; 4 * ENTRIES];
@@ -223,7 +216,6 @@ impl OpenDevice {
         Ok(entries.first_chunk().map(Status::decode).unwrap_or_default())
     }
 
-    /// Switches force on or off.
     pub(super) fn enable_force(&self, on: bool) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.enable_force)(c_uchar::from(on), self.id) })
@@ -253,13 +245,13 @@ impl OpenDevice {
         self.checked(unsafe { (self.sdk.functions.watchdog)(steps, self.id) })
     }
 
-    /// Sets the largest force that the library passes on, N.
+    /// Sets the maximum force that the library passes on, N.
     pub(super) fn set_force_max(&self, force_n: f64) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.force_max)(force_n, self.id) })
     }
 
-    /// Velocity threshold, in the device's own unit.
+    /// Returns the velocity threshold, in the device's own unit.
     pub(super) fn velocity_threshold(&self) -> Result<u32, SdkError> {
         let mut threshold = 0;
         // SAFETY: one unsigned int that lives through the call.
@@ -267,7 +259,7 @@ impl OpenDevice {
         Ok(threshold)
     }
 
-    /// Position and orientation; one exchange with the device.
+    /// Returns position and orientation; one exchange with the device.
     pub(super) fn pose(&self) -> Result<(Pose, Success), SdkError> {
         let [mut x, mut y, mut z] = [0.0; 3];
         let mut frame = [0.0; 9];
@@ -277,7 +269,6 @@ impl OpenDevice {
         self.checked(code).map(|success| (([x, y, z], frame), success))
     }
 
-    /// Angle of the gripper, rad.
     pub(super) fn gripper_rad(&self) -> Result<f64, SdkError> {
         let mut angle = 0.0;
         // SAFETY: one double that lives through the call.
@@ -285,7 +276,7 @@ impl OpenDevice {
         Ok(angle)
     }
 
-    /// Velocity, m/s; an error until two positions were read within its averaging window.
+    /// Returns the velocity, m/s; an error until two positions were read within its averaging window.
     pub(super) fn velocity_m_s(&self) -> Result<[f64; 3], SdkError> {
         let [mut x, mut y, mut z] = [0.0; 3];
         // SAFETY: three doubles that live through the call.
@@ -294,13 +285,13 @@ impl OpenDevice {
         Ok([x, y, z])
     }
 
-    /// Pressed buttons, one per bit, the first button in the lowest bit.
+    /// Returns the pressed buttons, one per bit, the first button in the lowest bit.
     pub(super) fn buttons(&self) -> u32 {
         // SAFETY: no pointers.
         unsafe { (self.sdk.functions.buttons)(self.id) }
     }
 
-    /// Whether the closed gripper counts as a button.
+    /// Sets whether the closed gripper counts as a button.
     pub(super) fn emulate_button(&self, on: bool) -> Result<Success, SdkError> {
         // SAFETY: no pointers.
         self.checked(unsafe { (self.sdk.functions.emulate_button)(c_uchar::from(on), self.id) })
@@ -324,7 +315,7 @@ pub fn prepare_thread() {
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
     unsafe {
         libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
-        // Field by field: some C libraries have more of them.
+        // Field by field, because some C libraries have additional fields.
         let mut parameter: libc::sched_param = std::mem::zeroed();
         parameter.sched_priority = PRIORITY;
         libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);

@@ -7,48 +7,46 @@ use serde::{Deserialize, Serialize};
 
 use crate::Trouble;
 
-/// Largest force of an omega.7, N.
+/// Maximum force of an omega.7, N.
 pub const FORCE_MAX_N: f64 = limits::OMEGA7_FORCE_N;
-/// Largest force of its gripper, N.
+/// Maximum force of its gripper, N.
 pub const GRIPPER_MAX_N: f64 = limits::OMEGA7_GRIPPER_N;
 
 /// Behaviour of the handle while no force is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IdleMode {
-    /// The motors brake, so the handle stays where it is.
+    /// The motors brake, so the handle stays in place.
     #[default]
     Brake,
     /// No current: it moves freely and sinks under its weight.
     Free,
 }
 
-/// Settings of one omega.7.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
     /// File of the library. If omitted, the manufacturer's library is searched for where the SDK installs it; an
     /// emulated handle uses the replacement library within this program.
     pub library: Option<PathBuf>,
-    /// Serial number of the device; if omitted, any free device. Required if there are two devices.
+    /// Serial number of the device; any free device if omitted. Required if there are two devices.
     pub serial: Option<u16>,
-    /// The hand that it must be made for, by its own word. If omitted: that of its side on a rig with two handles, any on a
-    /// rig with one.
+    /// Hand for which the device must be made, as reported by itself. If omitted: the hand of its side on a rig with
+    /// two handles, any hand on a rig with one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand: Option<Side>,
     /// Rate of the readings, Hz: 100 to 2000.
     pub rate_hz: f64,
     /// Time without a force command after which the device switches its force off by itself, ms: 1 to 31.
     pub watchdog_ms: f64,
-    /// Largest force, N: up to 12.
+    /// Maximum force, N: up to 12.
     pub force_max_n: f64,
-    /// Largest force of the gripper, N: up to 8.
+    /// Maximum force of the gripper, N: up to 8.
     pub gripper_max_n: f64,
     /// Whether the library compensates the handle's weight while force is on.
     pub gravity_compensation: bool,
     /// Whether the closed gripper counts as button 0.
     pub gripper_is_a_button: bool,
-    /// Behaviour of the handle while no force is wanted.
     pub idle: IdleMode,
     /// Address of an emulated handle; a real one has none.
     pub emulator: Option<SocketAddr>,
@@ -89,12 +87,12 @@ impl Settings {
             Some((key, value, least, most)) => Err(Trouble::Setting {
                 key: key.to_owned(),
                 value: value.to_string(),
-                allowed: format!("{key} is from {least} to {most}"),
+                allowed: format!("{least} to {most}"),
             }),
         }
     }
 
-    /// The watchdog's time in steps of 125 us.
+    /// Returns the watchdog's time in steps of 125 us.
     pub fn watchdog_steps(&self) -> u8 {
         (self.watchdog_ms / 0.125).round().clamp(1.0, 255.0) as u8
     }

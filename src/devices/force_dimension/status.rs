@@ -1,4 +1,5 @@
-//! Meaning of the SDK's numbers: errors, types of devices, the status array, why force is off. No calls, no clock.
+//! Meaning of the SDK's numbers: errors, types of devices, the status array, causes of a switched-off force. No calls,
+//! no clock.
 //!
 //! Source: headers of SDK 3.17.5 (`DHD_STATUS_*`, `DHD_ERROR_*`, `DHD_DEVICE_*`).
 
@@ -15,16 +16,13 @@ impl SdkError {
     pub const COMMUNICATION: Self = Self(2);
     /// The operating system has no driver for the device.
     pub const NO_DRIVER: Self = Self(4);
-    /// There is no device (any more).
+    /// The device does not exist (any more).
     pub const NO_DEVICE: Self = Self(5);
-    /// The device did not answer in time.
     pub const TIMED_OUT: Self = Self(7);
-    /// Redundant encoders disagree.
     pub const REDUNDANT_ENCODER: Self = Self(18);
-    /// In use by another program.
     pub const IN_USE: Self = Self(20);
 
-    /// Text of the SDK.
+    /// Returns the text of the SDK.
     pub const fn words(self) -> &'static str {
         match self.0 {
             0 => "no error",
@@ -54,12 +52,12 @@ impl SdkError {
         }
     }
 
-    /// Whether the device only lacks this feature, which is not a fault.
+    /// Returns whether the device only lacks this feature, which is not a fault.
     pub const fn is_missing_feature(self) -> bool {
         matches!(self.0, 6 | 10 | 16 | 19)
     }
 
-    /// Cause of the loss if calls continue to fail with this error.
+    /// Returns the cause of the loss if calls continue to fail with this error.
     pub const fn loss(self) -> Loss {
         match self {
             Self::NO_DEVICE | Self::NO_DRIVER => Loss::Disconnected,
@@ -69,7 +67,7 @@ impl SdkError {
         }
     }
 
-    /// Whether the error is permanent, so that the device is lost at once.
+    /// Returns whether the error is permanent, so that the device is lost at once.
     pub const fn is_final(self) -> bool {
         matches!(self, Self::NO_DEVICE | Self::REDUNDANT_ENCODER)
     }
@@ -78,7 +76,6 @@ impl SdkError {
 /// Additional information of a successful call (`DHD_TIMEGUARD`, `DHD_MOTOR_SATURATED`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Success {
-    /// No additional information.
     Plain,
     /// No newer data were available: the last data are repeated.
     TimeGuard,
@@ -102,16 +99,12 @@ impl Success {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// omega.7 for the right or the left hand.
-    Omega7 {
-        /// Whether it is for the left hand.
-        left_handed: bool,
-    },
+    Omega7 { left_handed: bool },
     /// Any other device, which this driver does not support.
     Other(i32),
 }
 
 impl Kind {
-    /// Decodes the number returned by `dhdGetSystemType`.
     pub const fn of(number: i32) -> Self {
         match number {
             35 => Self::Omega7 { left_handed: false },
@@ -120,7 +113,6 @@ impl Kind {
         }
     }
 
-    /// Its number.
     pub const fn number(self) -> i32 {
         match self {
             Self::Omega7 { left_handed: false } => 35,
@@ -129,7 +121,6 @@ impl Kind {
         }
     }
 
-    /// Its name.
     pub fn name(self) -> String {
         match self {
             Self::Omega7 { left_handed } => format!("omega.7 ({} hand)", if left_handed { "left" } else { "right" }),
@@ -144,16 +135,13 @@ impl Kind {
     }
 }
 
-/// Why the device switched its force off by itself.
+/// Reason why the device switched its force off by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceOffCause {
-    /// Not reported.
     #[default]
     None,
-    /// The force button on its base was pressed.
     Button,
-    /// The hand was faster than the velocity threshold.
     Velocity,
     /// No force command arrived within the watchdog's time.
     Watchdog,
@@ -161,9 +149,8 @@ pub enum ForceOffCause {
     Software,
     /// Error on USB.
     Usb,
-    /// Nobody holds the handle.
     DeadMan,
-    /// A number that this program does not know.
+    /// A number that this program does not support.
     Unknown,
 }
 
@@ -181,22 +168,22 @@ impl ForceOffCause {
         }
     }
 
-    /// Whether the device switched the force off by itself, for a known cause.
+    /// Returns whether the device switched the force off by itself, for a known cause.
     const fn is_by_the_device(self) -> bool {
         !matches!(self, Self::None | Self::Software | Self::Unknown)
     }
 
-    /// Cause and cure, for a screen.
+    /// Returns cause and remedy, for a screen.
     pub const fn words(self) -> &'static str {
         match self {
-            Self::None => "the device does not say why",
+            Self::None => "the device reports no cause",
             Self::Button => "the force button on its base was pressed; press it again",
             Self::Velocity => "the hand was too fast; hold the handle and enable force again",
-            Self::Watchdog => "no force command reached it in time; enable force again",
+            Self::Watchdog => "no force command arrived in time; enable force again",
             Self::Software => "another program switched it off",
             Self::Usb => "its USB connection was disturbed; check the cable",
-            Self::DeadMan => "nobody holds the handle; take it",
-            Self::Unknown => "for a cause that this program does not know",
+            Self::DeadMan => "the handle is not held; grip it",
+            Self::Unknown => "for an unknown cause",
         }
     }
 }
@@ -208,36 +195,28 @@ pub const ENTRIES: usize = 17;
 /// numbers of the SDK.
 pub const STATUS_CODE: u32 = 100;
 
-/// The status array, decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an entry of the device's own status")]
 pub struct Status {
     pub power: bool,
     pub connected: bool,
-    /// The device is running.
     pub started: bool,
-    /// It must be calibrated: the handle has to be put into its rest position.
+    /// The device must be calibrated: put the handle into its rest position.
     pub reset: bool,
     /// No current in the motors.
     pub idle: bool,
-    /// Force is on.
     pub force: bool,
     /// The brakes are on: the motors damp every motion.
     pub brake: bool,
-    /// Torque is on (active wrists only).
     pub torque: bool,
-    /// The device has a wrist.
     pub wrist: bool,
-    /// The device's error indicator.
     pub error: bool,
-    /// Gravity compensation is on.
     pub gravity: bool,
     pub time_guard: bool,
-    /// The wrist is initialised.
     pub wrist_ready: bool,
     /// Redundant encoders are monitored and agree.
     pub redundancy: bool,
-    /// Why force is off.
+    /// Cause of a switched-off force.
     pub force_off: ForceOffCause,
     /// The locks are closed (the value -1, unknown, counts as false).
     pub locks: bool,
@@ -269,8 +248,9 @@ impl Status {
         }
     }
 
-    /// Cause of a loss according to the status. An error indicator while the device has switched its own force off
-    /// refers to that event; the device still delivers. (The cause keeps its last value when force is on again.)
+    /// Returns the cause of a loss according to the status. An error indicator while the device has switched its own
+    /// force off refers to that event; the device still delivers data. (The cause keeps its last value when force is on
+    /// again.)
     pub const fn loss(&self) -> Option<Loss> {
         if !self.connected {
             return Some(Loss::Disconnected);
@@ -285,11 +265,11 @@ impl Status {
     }
 }
 
-/// Meaning of a [`Loss::Device`] code of this driver.
+/// Returns the meaning of a [`Loss::Device`] code of this driver.
 pub fn fault_words(code: u32) -> &'static str {
     match code {
-        STATUS_CODE => "it has no power",
-        103 => "it waits for its calibration: put the handle to its rest position",
+        STATUS_CODE => "the device has no power",
+        103 => "the device waits for its calibration: put the handle into its rest position",
         109 => "its error indicator is on",
         _ => SdkError(code.cast_signed()).words(),
     }

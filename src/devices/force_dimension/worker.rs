@@ -1,10 +1,10 @@
 //! The thread that owns a device. Every call of the SDK waits for USB, which the real-time loop must not do.
 //!
-//! In each cycle it applies the newest force command, reads and reports; a cycle begins with the loop's next command.
-//! A command is valid for [`COMMAND_AGE_MAX`];
-//! after that the force is zero until the next one, so a loop that hangs cannot leave a force applied. If this thread
-//! hangs, the device's watchdog switches the force off. Force is switched on only by command. However the thread ends
-//! (stopped, device lost, panic, end of the program), the device is left with its brakes on.
+//! In each cycle it applies the newest force command, reads and reports; a cycle begins with the loop's next command. A
+//! command is valid for [`COMMAND_AGE_MAX`]; after that the force is zero until the next one, so a hanging loop cannot
+//! leave a force applied. If this thread hangs, the device's watchdog switches the force off. Force is switched on only
+//! by command. However the thread ends (stopped, device lost, panic, end of the program), the brakes of the device are
+//! on afterwards.
 
 use std::{
     sync::{
@@ -30,15 +30,18 @@ pub(super) const COMMAND_AGE_MAX: Duration = Duration::from_millis(10);
 /// Time without a new reading after which the device is lost. The remaining time to the specified 20 ms is for the
 /// report to reach the loop.
 const SILENCE_MAX: Duration = Duration::from_millis(14);
-/// Number of impossible readings in a row after which the device is lost.
+/// Number of consecutive impossible readings after which the device is lost, so that a single one does no harm.
 const IMPLAUSIBLE_MAX: u32 = 10;
 /// If force is not on this long after it was requested, the device has refused it.
 const ENABLE_MAX: Duration = Duration::from_millis(50);
-/// The status is read once in this many cycles.
+/// The status is read once in this many cycles, because it costs a call to the library, and none of its values changes
+/// within a millisecond.
 const STATUS_EVERY: u64 = 4;
-/// Largest plausible distance of a handle from its base, m.
+/// Maximum plausible distance of a handle from its base, m; the workspace of an omega.7 is 160 mm wide (manufacturer's
+/// data sheet).
 const POSITION_MAX_M: f64 = 1.0;
-/// Largest plausible deviation of a rotation matrix from an orthonormal one.
+/// Maximum plausible deviation of a rotation matrix from an orthonormal one: the SDK calculates with 64-bit numbers, so
+/// that a larger deviation is not rounding.
 const FRAME_TOLERANCE: f64 = 1e-3;
 
 /// A force for the hand, N.
@@ -52,7 +55,6 @@ pub(super) struct ForceCommand {
 /// The thread's report to the loop, once per cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Report {
-    /// Number of the cycle.
     pub(super) cycle: u64,
     pub(super) reading: Option<HandleReading>,
     pub(super) status: Status,
@@ -62,16 +64,12 @@ pub(super) struct Report {
     pub(super) failing: Option<Loss>,
 }
 
-/// State shared by both threads.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// Whether the loop requests force.
     pub(super) force_wanted: AtomicBool,
-    /// Set when the driver is dropped.
     pub(super) stop: AtomicBool,
 }
 
-/// The thread's ends of the queues.
 pub(super) struct Ends {
     pub(super) reports: Sender<Report>,
     pub(super) events: Sender<HandleEvent>,
@@ -79,23 +77,21 @@ pub(super) struct Ends {
     pub(super) shared: Arc<Shared>,
 }
 
-/// Whether force is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drive {
     Off,
-    /// Requested, not yet seen in the status.
+    /// Requested, but not yet reported by the status.
     Asked(Instant),
     On,
 }
 
-/// The thread's state.
 pub(super) struct Worker {
     device: OpenDevice,
     ends: Ends,
     left_handed: bool,
     idle: IdleMode,
     period: Duration,
-    /// Whether the loop's force began this cycle.
+    /// Whether the loop's force started this cycle.
     is_led: bool,
     drive: Drive,
     command: Option<ForceCommand>,
@@ -149,10 +145,11 @@ impl Worker {
         }
     }
 
-    /// Waits for the loop's next force, with which the next cycle begins: the force does not wait for a period of this thread, and the reading
-    /// made after it is there when the loop comes again. Without one a cycle takes a period. Returns when the next one was due.
+    /// Waits for the loop's next force, which starts the next cycle: the force does not wait for a period of this
+    /// thread, and the reading that follows is available when the loop reads again. Without a force a cycle takes a
+    /// period. Returns the time at which the next cycle was due.
     fn wait(&mut self, begin: Instant) -> Instant {
-        // The loop comes once a period, a little sooner or later.
+        // The loop sends once per period, a little earlier or later.
         let earliest = begin + self.period / 2;
         let mut latest = begin + self.period;
         if self.is_led {
@@ -160,7 +157,7 @@ impl Worker {
         }
         let mut now = Instant::now();
         if now >= latest {
-            // Missed periods are skipped; the cycles are not made up for.
+            // Missed periods are skipped; the cycles are not caught up.
             self.counters.late_cycles += 1;
             return now;
         }
@@ -178,7 +175,8 @@ impl Worker {
 
     fn step(&mut self) {
         self.cycle += 1;
-        // After a failed reading the next one is tried at once: other calls would only run into the same failure.
+        // After a failed reading the next one is tried at once, because other calls would only run into the same
+        // failure.
         if self.failure.is_none() {
             if self.cycle % STATUS_EVERY == 1 {
                 self.read_status();
@@ -216,7 +214,7 @@ impl Worker {
         }
     }
 
-    /// A new reading; `None` if there is none, or an impossible one.
+    /// Returns a new reading; `None` if there is none, or an impossible one.
     fn read(&mut self) -> Option<HandleReading> {
         let read = self.device.pose().and_then(|pose| Ok((pose, self.device.gripper_rad()?)));
         let ((pose, success), gripper_rad) = match read {
@@ -227,7 +225,7 @@ impl Worker {
             }
         };
         self.failure = None;
-        // No velocity until two positions were read within its averaging window; this is not a fault.
+        // The velocity is missing until two positions were read within its averaging window, which is not a fault.
         let velocity = self.device.velocity_m_s().ok();
         // Left-handed devices use the opposite sign.
         let gripper_rad = if self.left_handed { gripper_rad.abs() } else { gripper_rad };
@@ -279,7 +277,7 @@ impl Worker {
         }
     }
 
-    /// The device has switched its force off: it stays off until the loop requests it again.
+    /// Handles a force that the device has switched off: it stays off until the loop requests it again.
     fn give_up(&mut self, event: HandleEvent) {
         self.ends.shared.force_wanted.store(false, Ordering::Release);
         self.counters.force_cut += 1;
@@ -288,11 +286,11 @@ impl Worker {
     }
 
     fn tell(&self, event: HandleEvent) {
-        // If nobody reads the events, the status still shows it.
+        // If the events are not read, the status still shows it.
         self.ends.events.try_send(event).ok();
     }
 
-    /// No force: brakes on, or a free handle.
+    /// Removes the force: brakes on, or a free handle.
     fn rest(&mut self) {
         self.drive = Drive::Off;
         self.command = None;
@@ -307,7 +305,7 @@ impl Worker {
 
     /// Follows the loop's request for force, and applies the newest command.
     fn drive(&mut self) {
-        // At most as many as the queue holds.
+        // At most as many as the queue can hold.
         let newest = self.ends.commands.try_iter().take(super::driver::QUEUE).last();
         let wanted = self.ends.shared.force_wanted.load(Ordering::Acquire);
         match (self.drive, wanted) {
@@ -339,7 +337,6 @@ impl Worker {
     }
 }
 
-/// A reading, if its numbers are plausible.
 fn plausible(
     (position_m, frame): super::sdk::Pose,
     gripper_rad: f64,
@@ -390,7 +387,7 @@ mod tests {
         }
         assert!(plausible(good, f64::NAN, None, 0).is_none());
         let mirror = [-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-        assert!(plausible((good.0, mirror), 0.2, None, 0).is_none(), "a reflection is no rotation");
+        assert!(plausible((good.0, mirror), 0.2, None, 0).is_none(), "a reflection is not a rotation");
         let without = plausible(good, 0.2, Some([f64::NAN, 0.0, 0.0]), 0).unwrap();
         assert!(without.velocity_m_s.is_none());
     }

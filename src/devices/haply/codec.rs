@@ -1,5 +1,8 @@
-//! Requests and answers on the line: little-endian, a code and its values, no checksum (reference `haply.md`, section
-//! 4.2). No input or output, no clock, no allocation.
+//! Requests and answers of the protocol: little-endian, a code and its values, no checksum (reference `haply.md`,
+//! section 4.2). No input or output, no clock, no allocation.
+//!
+//! Source of codes and layouts: the manufacturer's closed client (`HaplyHardwareAPI` 0.1.13), observed on a
+//! pseudo-terminal.
 
 use crate::unread::Unread;
 
@@ -18,11 +21,10 @@ pub const FORCE_BYTES: usize = 13;
 /// Length of a state, bytes.
 pub const STATE_BYTES: usize = 25;
 
-/// A state beyond these is impossible: m, m/s. The arms of an Inverse3 are shorter than half a metre.
+/// A state beyond these limits is impossible: m, m/s. The arms of an Inverse3 are shorter than half a metre.
 const REACH_MAX_M: f32 = 1.0;
 const SPEED_MAX_M_S: f32 = 30.0;
 
-/// Identity of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DeviceInfo {
     pub id: u16,
@@ -33,7 +35,7 @@ pub struct DeviceInfo {
 }
 
 impl DeviceInfo {
-    /// As the device sends it.
+    /// Encodes the identity like the device.
     pub fn encode(&self) -> [u8; DEVICE_BYTES] {
         let mut bytes = [0; DEVICE_BYTES];
         bytes[0] = DEVICE;
@@ -43,7 +45,7 @@ impl DeviceInfo {
         bytes
     }
 
-    /// Of exactly one answer; `None` if it is none.
+    /// Decodes exactly one answer; returns `None` if it is invalid.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; DEVICE_BYTES] = bytes.try_into().ok()?;
         let [DEVICE, low, high, model, hardware, firmware, uuid @ ..] = *bytes else { return None };
@@ -51,7 +53,7 @@ impl DeviceInfo {
     }
 }
 
-/// Where the grip is and how fast it moves, in the device's axes.
+/// Position and velocity of the grip, in the device's axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     /// Position, m, from the device's origin.
@@ -61,7 +63,7 @@ pub struct State {
 }
 
 impl State {
-    /// As the device sends it.
+    /// Encodes the state like the device.
     pub fn encode(&self) -> [u8; STATE_BYTES] {
         let mut bytes = [0; STATE_BYTES];
         bytes[0] = STATE;
@@ -70,27 +72,27 @@ impl State {
         bytes
     }
 
-    /// Of exactly one answer; `None` if it is none.
+    /// Decodes exactly one answer; returns `None` if it is invalid.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; STATE_BYTES] = bytes.try_into().ok()?;
         (bytes[0] == STATE).then(|| Self { position_m: take(&bytes[1..13]), velocity_m_s: take(&bytes[13..]) })
     }
 
-    /// Whether a device can be there and so fast.
+    /// Returns whether position and speed are possible.
     pub fn is_possible(&self) -> bool {
         let within = |values: &[f32; 3], limit: f32| values.iter().all(|value| value.abs() <= limit);
         within(&self.position_m, REACH_MAX_M) && within(&self.velocity_m_s, SPEED_MAX_M_S)
     }
 }
 
-/// The request that puts this force (N) on the hand.
+/// Returns the request that applies this force (N) to the hand.
 pub fn force_request(force_n: [f32; 3]) -> [u8; FORCE_BYTES] {
     let mut bytes = [FORCE; FORCE_BYTES];
     put(&mut bytes[1..], &force_n);
     bytes
 }
 
-/// The force in exactly one request, N; `None` if it is none.
+/// Returns the force in exactly one request, N; `None` if it is invalid.
 pub fn force_of(bytes: &[u8]) -> Option<[f32; 3]> {
     (bytes.len() == FORCE_BYTES && bytes[0] == FORCE).then(|| take(&bytes[1..]))
 }
@@ -109,16 +111,15 @@ fn take(from: &[u8]) -> [f32; 3] {
     values
 }
 
-/// What stands next in a stream of answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Next {
     /// A state with possible numbers.
     State(State),
-    /// A whole answer with impossible numbers.
+    /// A complete answer with impossible numbers.
     Impossible,
 }
 
-/// Size of the decoder's buffer: some answers.
+/// Size of the decoder's buffer: room for several answers.
 const ROOM: usize = 512;
 
 /// Finds states in a stream of bytes. Write into [`room`](Self::room), report the number with [`filled`](Self::filled),
@@ -136,7 +137,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
+    /// Returns the buffer for new bytes; not empty once [`next`](Self::next) has returned `None`.
     pub fn room(&mut self) -> &mut [u8] {
         self.unread.room()
     }
@@ -146,8 +147,8 @@ impl Decoder {
         self.unread.filled(count);
     }
 
-    /// The next whole answer. Without a checksum, one with impossible numbers may be no answer at all: it is taken as a whole only
-    /// where the next one begins behind it, or nothing stands there yet.
+    /// Returns the next complete answer. Without a checksum, bytes with impossible numbers may not be an answer at all:
+    /// they count as one only if the next answer begins behind them, or no bytes follow yet.
     #[expect(clippy::should_implement_trait, reason = "an iterator would borrow the room")]
     pub fn next(&mut self) -> Option<Next> {
         while let Some(first) = self.unread.bytes().first() {
@@ -175,12 +176,11 @@ impl Decoder {
         self.skipped += 1;
     }
 
-    /// Bytes skipped.
     pub const fn skipped(&self) -> u64 {
         self.skipped
     }
 
-    /// Discards what is there: the rest of an answer that did not come whole. Returns the number of bytes.
+    /// Discards the buffered bytes: the rest of an incomplete answer. Returns their number.
     pub const fn clear(&mut self) -> usize {
         let count = self.unread.clear();
         self.skipped += count as u64;

@@ -20,41 +20,46 @@ use crate::{
     transport::{Bytes, Serial, SerialSettings},
 };
 
-/// Time without an answer after which the handle is lost, s.
+/// Time without an answer after which the handle is lost, s: the limit of every device of the force path, so that no
+/// force is older.
 pub const SILENCE_S: f64 = 0.020;
-/// An answer that has not come after this time does not come any more, s.
+/// An answer that has not arrived after this time will not arrive any more, s: five periods at 1 kHz, so that a lost
+/// answer costs 5 ms and not the 20 ms of [`SILENCE_S`].
 const ANSWER_MAX_S: f64 = 0.005;
-/// Questions that may be without an answer at once: one on its way, and one that is late.
+/// Maximum number of unanswered requests: one under way, and one that is late.
 const OPEN_MAX: u32 = 2;
-/// Impossible answers in a row after which the handle is lost.
+/// Number of consecutive impossible answers after which the handle is lost: 10 ms at 1 kHz, so that a single damaged
+/// answer does no harm.
 const BAD_MAX: u32 = 10;
-/// Bytes skipped since the last answer after which the handle is lost.
+/// Number of bytes skipped since the last answer after which the handle is lost: as much as [`BAD_MAX`] answers,
+/// because damaged answers are skipped byte by byte.
 const SKIPPED_MAX: u64 = 10 * STATE_BYTES as u64;
-/// Reads in one tick.
+/// Maximum number of reads in one tick, so that a device that sends without pause cannot hold up the loop.
 const READS_MAX: usize = 8;
 /// A serial port on USB ignores the speed; the manufacturer's client sets none.
 const BAUD: u32 = 115_200;
 
 type Writer = Option<Box<dyn Write + Send>>;
 
-/// An open handle.
 pub struct Driver {
     line: Box<dyn Bytes>,
-    /// The same line for the lever, which must not hold it open when the driver is closed. The loop never locks it.
+    /// The same connection for the lever, which must not keep it open when the driver is closed. The loop never locks
+    /// it.
     writer: Arc<Mutex<Writer>>,
     decoder: Decoder,
     centre_m: Vector3<f64>,
     force_max_n: f64,
-    /// Force is wanted; the lever clears it from another thread.
+    /// Whether force is wanted; the lever clears it from another thread.
     wanted: Arc<AtomicBool>,
-    /// Whether the newest question was asked with force on. The device does not tell: with the answer it counts as on.
+    /// Whether the newest request was made with force on. The device does not report its force state: with the answer
+    /// the force counts as on.
     asked_on: bool,
-    /// The device may still have a force that is not zero on the hand.
+    /// Whether the device may still apply a non-zero force to the hand.
     pushes: bool,
     reported: Option<bool>,
-    /// A force was sent since the last poll.
+    /// Whether a force was sent since the last poll.
     told: bool,
-    /// Questions without an answer, and when the newest one was asked, s.
+    /// Number of unanswered requests, and time of the newest request, s.
     open: u32,
     asked_s: f64,
     now_s: f64,
@@ -66,7 +71,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Opens the line and asks who is there; may take half a second.
+    /// Opens the connection and identifies the device; may take half a second.
     ///
     /// # Errors
     /// [`Trouble`] if a setting is invalid, or the port is missing, in use, not permitted, or no handle answers there.
@@ -78,10 +83,10 @@ impl Driver {
         Ok(Self::on(Box::new(serial), writer, identity, settings))
     }
 
-    /// The same over another line, which the lever does not reach.
+    /// Opens the device over another connection, which the lever does not reach.
     ///
     /// # Errors
-    /// As [`open`](Self::open).
+    /// The errors of [`open`](Self::open).
     pub fn over(mut line: Box<dyn Bytes>, settings: &Settings) -> Result<Self, Trouble> {
         settings.check()?;
         let identity = opening::meet(&mut *line, settings)?;
@@ -115,8 +120,8 @@ impl Driver {
         matches!(self.health.standing, Standing::Lost(_))
     }
 
-    /// Puts a force on the hand, unless older questions are still open: the device would have to catch up. That there is to be none any
-    /// more is told at once.
+    /// Applies a force to the hand, unless older requests are still unanswered: the device would have to catch up.
+    /// Switching the force off is sent at once.
     fn ask(&mut self, force_n: Vector3<f64>) {
         let on = self.wanted.load(Ordering::Acquire);
         let force_n = if on { force_n } else { Vector3::zeros() };
@@ -135,7 +140,8 @@ impl Driver {
         }
     }
 
-    /// It is lost. The loop gives it no force any more, and it may still listen: its last one must not stay.
+    /// Marks the handle as lost. The loop sends it no more force, but it may still listen, so its last force is set to
+    /// zero.
     fn lose(&mut self, loss: Loss) {
         self.health.lose(loss);
         self.line.send(&force_request([0.0; 3])).ok();
@@ -153,7 +159,7 @@ impl Driver {
         }
     }
 
-    /// Takes what has arrived; the newest state.
+    /// Reads the data that have arrived; returns the newest state.
     fn take(&mut self) -> Option<State> {
         let mut newest = None;
         for _ in 0..READS_MAX {
@@ -184,7 +190,7 @@ impl Driver {
         newest
     }
 
-    /// Gives up an answer that did not come, with what came of it.
+    /// Gives up a missing answer and its partial data.
     fn give_up(&mut self) {
         if self.open > 0 && self.now_s - self.asked_s > ANSWER_MAX_S {
             self.health.lost += u64::from(std::mem::take(&mut self.open));
@@ -199,7 +205,7 @@ impl Driver {
         } else if self.decoder.skipped() - self.skipped_before > SKIPPED_MAX {
             Loss::Corrupt
         } else if self.now_s - self.health.newest_s.unwrap_or(first_s) > SILENCE_S {
-            // With no answer few questions are asked, so what was wrong with the last ones decides.
+            // Without answers few requests are sent, so the fault of the last answers decides.
             if self.bad_in_a_row > 0 {
                 Loss::Implausible
             } else if self.decoder.skipped() > self.skipped_before {
@@ -227,7 +233,7 @@ impl Device for Driver {
         let newest = self.take();
         self.give_up();
         self.watch(first_s);
-        // Where the loop sets no force the handle is still asked where it is, with none.
+        // If the loop sets no force, the position is still requested, with zero force.
         if !std::mem::take(&mut self.told) {
             self.ask(Vector3::zeros());
         }
@@ -266,7 +272,7 @@ impl Leader for Driver {
         let writer = Arc::clone(&self.writer);
         lever.attach(move || {
             wanted.store(false, Ordering::Release);
-            // The loop stands still: its last force must not stay.
+            // The loop stands still: its last force must not persist.
             if let Some(writer) = &mut *writer.lock().unwrap_or_else(PoisonError::into_inner) {
                 writer.write_all(&force_request([0.0; 3])).ok();
             }
@@ -276,7 +282,7 @@ impl Leader for Driver {
 
 impl Drop for Driver {
     fn drop(&mut self) {
-        // Whatever its state: a handle that answers no longer may still listen.
+        // In any state: a handle that no longer answers may still listen.
         self.line.send(&force_request([0.0; 3])).ok();
         self.writer.lock().unwrap_or_else(PoisonError::into_inner).take();
     }

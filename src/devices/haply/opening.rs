@@ -1,4 +1,4 @@
-//! Opens the line, and asks who is there and where the grip is.
+//! Opens the connection, and requests the identity and the position of the grip.
 
 use std::{
     thread::sleep,
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{Identity, Loss, Trouble, same_serial, transport::Bytes};
 
-/// How long one answer is waited for, and how often it is asked for: what the line still holds may come first.
+/// Maximum time for one answer, and number of requests for it, because buffered data may arrive first.
 const ANSWER_MAX: Duration = Duration::from_millis(100);
 const ATTEMPTS: usize = 3;
 const NAP: Duration = Duration::from_micros(500);
@@ -19,7 +19,7 @@ const NAP: Duration = Duration::from_micros(500);
 impl DeviceInfo {
     fn identity(&self) -> Identity {
         Identity {
-            // The manufacturer's numbers of models are not known to us.
+            // The manufacturer's model numbers are unknown to us.
             product: format!("Haply handle, model {}", self.model),
             serial: format!("{:04X}", self.id),
             firmware: self.firmware.to_string(),
@@ -27,7 +27,7 @@ impl DeviceInfo {
     }
 }
 
-/// Reads what comes within the time of one answer, at most until `enough`.
+/// Reads the data that arrive within the time of one answer, at most until `enough`.
 fn heard(line: &mut dyn Bytes, enough: usize) -> Result<Vec<u8>, Loss> {
     let begin = Instant::now();
     let mut heard = Vec::new();
@@ -41,7 +41,6 @@ fn heard(line: &mut dyn Bytes, enough: usize) -> Result<Vec<u8>, Loss> {
     Ok(heard)
 }
 
-/// Discards what the line still holds.
 fn drain(line: &mut dyn Bytes) -> Result<(), Loss> {
     let mut buffer = [0; 256];
     for _ in 0..64 {
@@ -52,7 +51,7 @@ fn drain(line: &mut dyn Bytes) -> Result<(), Loss> {
     Ok(())
 }
 
-/// Asks the device who it is, and puts no force on it. What it answers before the question is old.
+/// Requests the device's identity, without force. Data that arrive before the request are old.
 pub(super) fn meet(line: &mut dyn Bytes, settings: &Settings) -> Result<Identity, Trouble> {
     let place = settings.port.clone();
     let gone = |_: Loss| Trouble::Absent { place: place.clone() };
@@ -63,7 +62,7 @@ pub(super) fn meet(line: &mut dyn Bytes, settings: &Settings) -> Result<Identity
         line.send(&[WAKE_UP]).map_err(gone)?;
         let answer = heard(line, DEVICE_BYTES).map_err(gone)?;
         any |= !answer.is_empty();
-        // Behind the rest of an older answer.
+        // After the rest of an older answer.
         found = answer.windows(DEVICE_BYTES).rev().find_map(DeviceInfo::decode);
         if found.is_some() {
             break;
@@ -74,7 +73,7 @@ pub(super) fn meet(line: &mut dyn Bytes, settings: &Settings) -> Result<Identity
             Trouble::WrongProduct {
                 place,
                 expected: "Haply handle".to_owned(),
-                found: "device that answers otherwise".to_owned(),
+                found: "device with another protocol".to_owned(),
             }
         } else {
             Trouble::Silent { place }
@@ -94,12 +93,13 @@ pub(super) fn meet(line: &mut dyn Bytes, settings: &Settings) -> Result<Identity
         Some(_) => Err(Trouble::NotReady {
             place,
             mode: "start-up".to_owned(),
-            cure: "Put the grip into its rest and switch the handle off and on, as its manual says.".to_owned(),
+            cure: "Put the grip into its rest position and switch the handle off and on, as described in its manual."
+                .to_owned(),
         }),
         None if answer.first() == Some(&STATE) || answer.is_empty() => Err(Trouble::NotReady {
             place,
             mode: "start-up".to_owned(),
-            cure: "Plug in its power supply, put the grip into its rest, and wait until its light is steady."
+            cure: "Plug in its power supply, put the grip into its rest position, and wait until its light is steady."
                 .to_owned(),
         }),
         None => Err(Trouble::Other { place, reason: Loss::Corrupt.cause().to_owned() }),

@@ -1,30 +1,27 @@
-//! Settings of a Haply handle in a rig file.
-
 use serde::{Deserialize, Serialize};
 
 use crate::Trouble;
 
-/// Largest force that may be asked of an Inverse3, N.
+/// Maximum force that may be commanded to an Inverse3, N.
 pub const FORCE_LIMIT_N: f64 = 10.0;
-/// Middle of the workspace of an Inverse3 that stands on its base, m from its origin (the manufacturer's example of
-/// position control).
+/// Centre of the workspace of an Inverse3 on its base, m from its origin (the manufacturer's example of position
+/// control).
 pub const CENTRE_M: [f64; 3] = [0.0186, -0.153, 0.151];
-/// How far the middle may be from the origin, m.
+/// Maximum distance of the centre from the origin, m.
 const CENTRE_MAX_M: f64 = 0.5;
 
-/// Settings of one handle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "haply")]
 pub struct Settings {
-    /// Its device file.
+    /// Device file.
     pub port: String,
-    /// Required device id, four hexadecimal digits as `nima devices` prints it; any if omitted.
+    /// Required device id, four hexadecimal digits as printed by `nima devices`; any device if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
-    /// Largest force, N, above 0 to 10.
+    /// Maximum force, N, above 0 to 10.
     #[serde(default = "Settings::usual_force_max_n")]
     pub force_max_n: f64,
-    /// Where positions are counted from, m in the device's axes.
+    /// Origin of the positions, m in the device's axes.
     #[serde(default = "Settings::usual_centre_m")]
     pub centre_m: [f64; 3],
 }
@@ -38,7 +35,7 @@ impl Settings {
         CENTRE_M
     }
 
-    /// The usual settings at this port.
+    /// Returns the default settings at this port.
     pub fn at(port: impl Into<String>) -> Self {
         Self {
             port: port.into(),
@@ -57,7 +54,7 @@ impl Settings {
             Err(Trouble::Setting { key: key.to_owned(), value, allowed: allowed.to_owned() })
         };
         if self.port.trim().is_empty() {
-            return refuse("port", "\"\"".to_owned(), "it must name the handle's device file");
+            return refuse("port", "\"\"".to_owned(), "the handle's device file");
         }
         if !(self.force_max_n > 0.0 && self.force_max_n <= FORCE_LIMIT_N) {
             return refuse("force_max_n", self.force_max_n.to_string(), "above 0 to 10 N");

@@ -1,4 +1,4 @@
-//! The driver against a handle that lives in the test and answers at once.
+//! The driver with a handle that lives in the test and answers at once.
 
 use std::{
     collections::VecDeque,
@@ -15,15 +15,15 @@ use crate::{Device as _, HandleReading, Leader as _, Lever, Loss, Standing, Trou
 
 const INFO: DeviceInfo = DeviceInfo { id: 0x049D, model: 4, hardware: 2, firmware: 9, uuid: [7; 16] };
 
-/// What the device is and has heard.
+/// State of the device and the requests that it received.
 struct Inner {
     state: State,
     waiting: VecDeque<u8>,
     forces_n: Vec<[f32; 3]>,
-    /// It answers; it is there.
+    /// Whether it answers, and whether it is connected.
     answers: bool,
     gone: bool,
-    /// In place of an answer.
+    /// Sent instead of an answer.
     instead: Option<Vec<u8>>,
 }
 
@@ -82,7 +82,7 @@ fn opened(settings: &Settings) -> (Fake, Driver) {
     (fake, driver)
 }
 
-/// Ticks of the loop, each with this force; the newest reading.
+/// Runs ticks of the loop with this force; returns the newest reading.
 fn ticks(driver: &mut Driver, now_s: &mut f64, count: u32, force_n: Vector3<f64>) -> Option<HandleReading> {
     let mut newest = None;
     for _ in 0..count {
@@ -123,7 +123,7 @@ fn it_tells_where_the_grip_is_from_the_centre_and_takes_a_force_within_its_limit
     ticks(&mut driver, &mut now_s, 1, Vector3::x());
     assert_eq!(fake.newest_n(), Vector3::x());
     drop(driver);
-    assert_eq!(fake.newest_n(), Vector3::zeros(), "whoever closes it takes the force away");
+    assert_eq!(fake.newest_n(), Vector3::zeros(), "closing it removes the force");
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn a_force_is_taken_back_at_once_also_from_a_handle_that_does_not_answer() {
     ticks(&mut driver, &mut now_s, 1, Vector3::zeros());
     assert_eq!(fake.newest_n(), Vector3::zeros(), "although older answers are missing");
     ticks(&mut driver, &mut now_s, 10, Vector3::x());
-    assert_eq!(fake.newest_n(), Vector3::x(), "it is asked again");
+    assert_eq!(fake.newest_n(), Vector3::x(), "the request is repeated");
     ticks(&mut driver, &mut now_s, 20, Vector3::x());
     assert!(matches!(driver.health().standing, Standing::Lost(Loss::Silent)));
     assert_eq!(fake.newest_n(), Vector3::zeros(), "it may still listen");

@@ -5,6 +5,8 @@
 //! little-endian, full deflection 350; raw x points right, y towards the user, z down. Readings are rotated by half a
 //! turn about x into [`CapReading`]'s frame (x right, y away from the user, z up), translation and rotation alike (the
 //! convention "HID, z up" of pyspacemouse).
+//!
+//! Source of layouts and ranges: pyspacemouse 2.1.0 (reference `hid.md`), because the manufacturer publishes none.
 
 use nalgebra::Vector3;
 
@@ -15,9 +17,9 @@ pub const FULL: f64 = 350.0;
 /// Larger counts are impossible: twice full deflection.
 pub const POSSIBLE: u16 = 700;
 /// A deflected cap that sends nothing for this time counts as released, s. Split models send each half every 16 ms,
-/// wireless ones everything every 16 ms, and all send zeros before they fall silent at rest.
+/// wireless models everything every 16 ms, and all models send zeros before they become silent at rest.
 pub const RELEASE_AFTER_S: f64 = 0.100;
-/// Length of the longest report that is encoded here.
+/// Maximum length of a report encoded here.
 pub const LENGTH_MAX: usize = 13;
 
 /// One report.
@@ -31,23 +33,18 @@ pub enum CapReport {
     Motion([i16; 6]),
     /// Pressed buttons, one per bit, the first button in the lowest bit.
     Buttons(u32),
-    /// Battery of a wireless model.
     Battery {
-        /// Charge, percent.
         percent: u8,
-        /// Whether it is charging by cable.
+        /// Whether the cable charges it.
         charging: bool,
     },
-    /// A report that this program does not use.
     Other,
 }
 
-/// Why a report was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BadReport {
-    /// The id or length is not that of a report of this device.
+    /// Id or length do not belong to a report of this device.
     Shape,
-    /// Impossible values.
     Content,
 }
 
@@ -58,7 +55,7 @@ const BUTTONS: u8 = 0x03;
 const LIGHT: u8 = 0x04;
 const BATTERY: u8 = 0x17;
 
-/// The output report that switches the light on or off.
+/// Returns the output report that switches the light on or off.
 pub const fn light(on: bool) -> [u8; 2] {
     [LIGHT, on as u8]
 }
@@ -75,7 +72,7 @@ impl CapReport {
     /// Decodes one report.
     ///
     /// # Errors
-    /// [`BadReport`] if the id or length is not that of a report, or a value is impossible.
+    /// [`BadReport`] if id or length do not belong to a report, or a value is impossible.
     ///
     /// ```
     /// use nima_devices::hid::cap_codec::{CapReport, CapState};
@@ -107,8 +104,8 @@ impl CapReport {
         }
     }
 
-    /// Encodes it; returns its length, 0 for [`CapReport::Other`]. Buttons take two bytes if they fit, as on two-button
-    /// models.
+    /// Encodes the report; returns its length, 0 for [`CapReport::Other`]. Buttons take two bytes if they fit, as on
+    /// two-button models.
     pub fn encode(&self, buffer: &mut [u8; LENGTH_MAX]) -> usize {
         let mut put = |id: u8, axes: &[i16]| {
             buffer[0] = id;
@@ -139,7 +136,7 @@ impl CapReport {
 /// Signs between the raw frame and the frame of the readings; their own inverse.
 const SIGNS: [f64; 3] = [1.0, -1.0, -1.0];
 
-/// Counts for a reading; a value that is not finite becomes zero.
+/// Returns the counts for a reading; a non-finite value becomes zero.
 pub fn counts_of(reading: &CapReading) -> [i16; 6] {
     let count = |value: f64, sign: f64| (value.clamp(-1.0, 1.0) * sign * FULL).round() as i16;
     std::array::from_fn(|i| match i {
@@ -195,8 +192,7 @@ impl CapState {
         }
     }
 
-    /// Sets to zero what was deflected and not renewed for [`RELEASE_AFTER_S`]; returns how many of the two halves that
-    /// were.
+    /// Sets deflections to zero that were not renewed for [`RELEASE_AFTER_S`]; returns the number of affected halves.
     pub fn release_stale(&mut self, now_s: f64) -> u64 {
         let mut released = 0;
         for half in &mut self.halves {
@@ -208,7 +204,6 @@ impl CapState {
         released
     }
 
-    /// The present state.
     pub const fn reading(&self) -> CapReading {
         let [translation, rotation] = self.halves;
         CapReading { translation: translation.axes, rotation: rotation.axes, buttons: self.buttons }

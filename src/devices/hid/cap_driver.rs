@@ -1,5 +1,3 @@
-//! Driver of a six-axis cap.
-
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -11,7 +9,6 @@ use super::{
 };
 use crate::{CapReading, Device, Health, Identity, Stamped, Trouble, transport::Datagrams};
 
-/// The cap section of a rig file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CapSettings {
@@ -29,16 +26,15 @@ impl Default for CapSettings {
     }
 }
 
-/// Format of the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wire {
     Reports,
-    #[cfg_attr(not(unix), expect(dead_code, reason = "the daemon is reached by a UNIX socket"))]
+    #[cfg_attr(not(unix), expect(dead_code, reason = "the daemon needs a UNIX socket"))]
     Spacenavd,
 }
 
 /// An open cap. Lost when its source is gone, or when eight reports in a row are damaged or impossible. Silence at rest
-/// is normal; a deflected cap that falls silent counts as released after [`RELEASE_AFTER_S`](super::RELEASE_AFTER_S),
+/// is normal; a deflected cap that becomes silent counts as released after [`RELEASE_AFTER_S`](super::RELEASE_AFTER_S),
 /// and its missing reports as lost.
 pub struct CapDriver {
     line: Line,
@@ -50,7 +46,7 @@ pub struct CapDriver {
 }
 
 impl CapDriver {
-    /// Opens it; may take some 100 ms.
+    /// Opens the cap; may take about 100 ms.
     ///
     /// # Errors
     /// [`Trouble`] if the source is invalid, or the device is missing, cannot be opened or is not a cap.
@@ -71,7 +67,6 @@ impl CapDriver {
         Ok(Self::on(datagrams, identity, wire, settings))
     }
 
-    /// Uses an open source of reports.
     pub fn over(datagrams: Box<dyn Datagrams>, identity: &HidIdentity, settings: &CapSettings) -> Self {
         Self::on(datagrams, identity.identity(), Wire::Reports, settings)
     }
@@ -89,7 +84,7 @@ impl CapDriver {
         driver
     }
 
-    /// Charge of a wireless model, percent, once it has reported it.
+    /// Returns the charge of a wireless model, percent, once it has reported it.
     pub const fn battery_percent(&self) -> Option<u8> {
         self.battery_percent
     }

@@ -1,16 +1,15 @@
-//! Shared by both drivers: reads reports with bounded work, and decides when too many are damaged.
+//! Shared by both drivers: reads reports with bounded work, and determines when too many are damaged.
 
 use super::cap_codec::BadReport;
 use crate::{Health, Identity, Loss, Stamped, Standing, transport::Datagrams};
 
-/// Most reports handled in one poll; further ones wait for the next.
+/// Maximum number of reports handled in one poll; further ones wait for the next poll.
 const REPORTS_MAX: usize = 64;
-/// The device is lost after this many bad reports in a row: 64 ms of a wired cap.
+/// Number of consecutive bad reports after which the device is lost: 64 ms of a wired cap.
 const BAD_MAX: u32 = 8;
-/// Longest report of a full-speed device, with its id.
+/// Maximum length of a full-speed device's report, with its id.
 const BUFFER: usize = 65;
 
-/// An open source of reports, with its counters.
 pub(super) struct Line {
     pub(super) source: Box<dyn Datagrams>,
     pub(super) health: Health,
@@ -26,7 +25,7 @@ impl Line {
         Self { source, health, identity, bad_in_a_row: 0 }
     }
 
-    /// Passes every report that has arrived to `take`, which returns whether it was good.
+    /// Passes every report that has arrived to `take`, which returns whether it was valid.
     pub(super) fn receive(&mut self, now_s: f64, mut take: impl FnMut(&[u8]) -> Result<bool, BadReport>) -> bool {
         let mut buffer = [0; BUFFER];
         let mut news = false;

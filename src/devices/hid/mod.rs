@@ -3,8 +3,8 @@
 //! Reports come from one of four sources behind [`Datagrams`](super::transport::Datagrams): a hidraw node (found by its
 //! ids or opened by its path), the socket of this project's emulator, the socket of `spacenavd`, or a pair in memory
 //! (tests). A device at rest cannot be distinguished from a dead one: both are silent. Therefore a switch is pressed
-//! only by a report that has arrived, and whatever is unreadable, damaged, lost or too old counts as released and as
-//! zero ([`Held`], [`RELEASE_AFTER_S`]).
+//! only by a report that has arrived, and unreadable, damaged, lost or outdated data count as released and as zero
+//! ([`Held`], [`RELEASE_AFTER_S`]).
 //!
 //! A pedal that is a keyboard also types into the focused window unless the udev rules of `nima devices --udev-rules`
 //! are installed. A pedal must never be the only emergency stop.

@@ -2,18 +2,18 @@
 //!
 //! `PCsensor`: a boot keyboard, 8 bytes: modifiers, 0, six key codes (HID usage page 7); all zero when released. VEC Infinity: 2 bytes, the
 //! lowest three bits of the first are left, centre and right.
+//!
+//! Source: published descriptions (reference `hid.md`), because the manufacturers publish none.
 
 use super::cap_codec::BadReport;
 
 /// Number of keys that can be distinguished.
 pub const KEYS_MAX: usize = 8;
-/// The longest report.
 pub const LENGTH_MAX: usize = 8;
 
-/// Format of a pedal's reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// Boot keyboard; switch `i` is the key with code `keys[i]`, or 0 if there is none.
+    /// Boot keyboard; switch `i` is the key with code `keys[i]`, or 0 for none.
     Keyboard {
         /// HID key codes.
         keys: [u8; KEYS_MAX],
@@ -30,10 +30,10 @@ const SWITCHES_LENGTH: usize = 2;
 const FIRST_KEY: u8 = 4;
 
 impl Layout {
-    /// The pressed switches in a report, one per bit, the first switch in the lowest bit.
+    /// Returns the pressed switches in a report, one per bit, the first switch in the lowest bit.
     ///
     /// # Errors
-    /// [`BadReport`] if the length or the content is not that of a pedal's report.
+    /// [`BadReport`] if length or content do not belong to a pedal's report.
     pub fn decode(&self, report: &[u8]) -> Result<u32, BadReport> {
         match self {
             Self::Keyboard { keys } => {

@@ -10,7 +10,6 @@ use super::{
 };
 use crate::{Device, Health, Identity, PedalReading, Stamped, Trouble, transport::Datagrams};
 
-/// The pedal section of a rig file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PedalSettings {
@@ -22,7 +21,7 @@ pub struct PedalSettings {
     pub keys: Vec<u8>,
     /// Index of the clutch switch, from 0; while pressed, the hand moves without moving the tip.
     pub clutch: u32,
-    /// Index of the presence switch; `None` if there is none.
+    /// Index of the presence switch; `None` if the pedal has none.
     pub presence: Option<u32>,
 }
 
@@ -32,7 +31,6 @@ impl Default for PedalSettings {
     }
 }
 
-/// Functions of the switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PedalRoles {
     clutch: u32,
@@ -40,12 +38,11 @@ pub struct PedalRoles {
 }
 
 impl PedalRoles {
-    /// Whether the clutch is pressed.
     pub const fn clutch(self, reading: PedalReading) -> bool {
         reading.pressed >> self.clutch & 1 == 1
     }
 
-    /// Whether the presence switch is pressed; `None` if there is none.
+    /// Returns whether the presence switch is pressed; `None` if the pedal has none.
     pub fn presence(self, reading: PedalReading) -> Option<bool> {
         self.presence.map(|switch| reading.pressed >> switch & 1 == 1)
     }
@@ -63,7 +60,7 @@ impl PedalSettings {
             allowed: allowed.to_owned(),
         };
         if self.keys.is_empty() || self.keys.len() > KEYS_MAX || self.keys.iter().any(|key| *key < 4) {
-            return Err(setting("keys", format!("{:?}", self.keys), "one to eight key codes from 4"));
+            return Err(setting("keys", format!("{:?}", self.keys), "one to eight key codes, each at least 4"));
         }
         for (key, switch) in [("clutch", Some(self.clutch)), ("presence", self.presence)] {
             if let Some(switch) = switch.filter(|switch| *switch >= KEYS_MAX as u32) {
@@ -71,7 +68,7 @@ impl PedalSettings {
             }
         }
         if self.presence == Some(self.clutch) {
-            return Err(setting("presence", self.clutch.to_string(), "another switch than the clutch"));
+            return Err(setting("presence", self.clutch.to_string(), "a different switch than the clutch"));
         }
         Ok(PedalRoles { clutch: self.clutch, presence: self.presence })
     }
@@ -95,8 +92,8 @@ impl PedalSettings {
     }
 }
 
-/// An open pedal. All switches count as released until it reports. Reports come on changes, and a report that cannot be
-/// decoded releases all switches. A silent pedal cannot be distinguished from one that is not moved.
+/// An open pedal. All switches count as released until it reports. Reports arrive on changes, and a report that cannot
+/// be decoded releases all switches. A silent pedal cannot be distinguished from one that is not moved.
 pub struct PedalDriver {
     line: Line,
     layout: Layout,
@@ -105,7 +102,7 @@ pub struct PedalDriver {
 }
 
 impl PedalDriver {
-    /// Opens it; may take some 100 ms.
+    /// Opens the pedal; may take about 100 ms.
     ///
     /// # Errors
     /// [`Trouble`] if a setting is invalid, or the device is missing, cannot be opened or is not a pedal.
@@ -130,7 +127,6 @@ impl PedalDriver {
         Ok(Self { line, layout, roles: settings.roles()?, pressed: 0 })
     }
 
-    /// Functions of the switches.
     pub const fn roles(&self) -> PedalRoles {
         self.roles
     }

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{Loss, Trouble, discovery::rules, transport::Datagrams};
 
-/// Usage page and usage of the interface that sends the reports; a device may have several interfaces.
+/// Returns usage page and usage of the interface that sends the reports; a device may have several interfaces.
 const fn usage(kind: Kind) -> Option<(u16, u16)> {
     match kind {
         // Generic desktop page: multi-axis controller, keyboard.
@@ -33,7 +33,7 @@ fn identity(info: &DeviceInfo) -> HidIdentity {
     }
 }
 
-/// Opens the first device that `wanted` accepts, and of its interfaces the one that sends the reports.
+/// Opens the first device that `wanted` accepts, at the interface that sends the reports.
 pub(super) fn open_first(
     what: &str,
     wanted: impl Fn(&HidIdentity) -> bool,
@@ -49,7 +49,6 @@ pub(super) fn open_first(
     open(&api, found)
 }
 
-/// Opens the hidraw node at `path`.
 pub(super) fn open_path(path: &Path) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
     let place = path.display().to_string();
     permitted(path, None)?;
@@ -62,7 +61,7 @@ pub(super) fn open_path(path: &Path) -> Result<(Box<dyn Datagrams>, HidIdentity)
         None => Err(Trouble::WrongProduct {
             place,
             expected: "human interface device (hidraw)".to_owned(),
-            found: "file of another kind".to_owned(),
+            found: "file of a different type".to_owned(),
         }),
     }
 }
@@ -99,7 +98,6 @@ fn open(api: &HidApi, info: &DeviceInfo) -> Result<(Box<dyn Datagrams>, HidIdent
     Ok((Box::new(Node { node }), identity(info)))
 }
 
-/// An open device.
 struct Node {
     #[cfg(target_os = "linux")]
     node: std::fs::File,

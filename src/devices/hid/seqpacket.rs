@@ -1,8 +1,8 @@
-//! Packets over a UNIX socket, used by the emulator in place of a hidraw node, which no kernel interface can emulate on
+//! Packets over a UNIX socket, used by the emulator instead of a hidraw node, which no kernel interface can emulate on
 //! every computer.
 //!
-//! One read gives one packet, as with the reports of a hidraw node. Closing one end is noticed at the other, as when a
-//! device is unplugged.
+//! One read returns one packet, like the reports of a hidraw node. The other end detects that one end is closed, as
+//! when a device is unplugged.
 #![expect(unsafe_code, reason = "std makes no sequenced-packet sockets; everything after making them is safe")]
 
 use std::{
@@ -20,7 +20,7 @@ use std::{
 
 use crate::{Loss, transport::Datagrams};
 
-/// Connections that may wait for being accepted.
+/// Maximum number of connections that wait to be accepted.
 const BACKLOG: libc::c_int = 8;
 
 fn socket() -> io::Result<OwnedFd> {

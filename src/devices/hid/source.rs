@@ -23,7 +23,6 @@ pub enum Source {
         /// Serial number, to choose among several.
         serial: Option<String>,
     },
-    /// A device file.
     Path(PathBuf),
     /// The socket of this project's emulator.
     Emulated(PathBuf),
@@ -36,17 +35,16 @@ pub enum Source {
 pub struct HidIdentity {
     pub vendor: u16,
     pub product: u16,
-    /// Serial number, often empty.
     pub serial: String,
-    /// Product name.
     pub name: String,
 }
 
-/// First word of an emulator's first packet, which contains what the kernel's file system tells of a real device.
+/// First word of an emulator's first packet, which contains the data that the kernel's file system provides for a real
+/// device.
 const HELLO: &str = "nima-hid";
 
 impl HidIdentity {
-    /// The emulator's first packet.
+    /// Returns the emulator's first packet.
     pub fn hello(&self) -> String {
         let serial = if self.serial.is_empty() { "-" } else { &self.serial };
         format!("{HELLO} {:04x}:{:04x} {serial} {}", self.vendor, self.product, self.name)
@@ -67,7 +65,7 @@ impl HidIdentity {
         Some(Self { vendor: id(vendor)?, product: id(product)?, serial, name: name.to_owned() })
     }
 
-    /// Format of its reports; `None` for an unknown device. Every newer device of 3Dconnexion is a cap.
+    /// Returns the format of the reports; `None` for an unknown device. Every newer device of 3Dconnexion is a cap.
     pub fn kind(&self) -> Option<Kind> {
         match known(self.vendor, self.product) {
             Some(model) => Some(model.kind),
@@ -76,7 +74,7 @@ impl HidIdentity {
         }
     }
 
-    /// Text for a message.
+    /// Returns the text for a message.
     pub fn words(&self) -> String {
         let Self { vendor, product, name, .. } = self;
         let name = if name.is_empty() { known(*vendor, *product).map_or("device", |model| model.name) } else { name };
@@ -130,7 +128,7 @@ impl fmt::Display for Source {
 }
 
 impl Source {
-    /// Opens it and checks that the device is one of `kinds`; ids given in the rig file are not checked.
+    /// Opens the source and checks that the device is one of `kinds`; ids given in the rig file are not checked.
     pub(super) fn open(&self, kinds: &[Kind]) -> Result<(Box<dyn Datagrams>, HidIdentity), Trouble> {
         let what = kinds.first().map_or("device", |kind| kind.words());
         let fits = |identity: &HidIdentity| identity.kind().is_some_and(|kind| kinds.contains(&kind));
@@ -147,7 +145,7 @@ impl Source {
             Self::Spacenavd(_) => Err(Trouble::Setting {
                 key: "source".to_owned(),
                 value: self.to_string(),
-                allowed: "spacenavd gives caps only".to_owned(),
+                allowed: "spacenavd supports caps only".to_owned(),
             }),
         }?;
         if fits(&opened.1) {
@@ -165,7 +163,7 @@ fn emulated(path: &std::path::Path) -> Result<(Box<dyn Datagrams>, HidIdentity),
     let place = format!("emulated:{}", path.display());
     let mut packets = super::seqpacket::connect(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::ConnectionRefused => Trouble::NobodyListens { place: place.clone() },
-        _ => Trouble::of_port(path, &error, "the socket of an emulator belongs to who started it"),
+        _ => Trouble::of_port(path, &error, "the socket of an emulator belongs to the user who started it"),
     })?;
     let begin = Instant::now();
     let mut buffer = [0; 256];

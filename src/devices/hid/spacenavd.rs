@@ -3,6 +3,8 @@
 //! A UNIX stream of events of eight native 32-bit integers: `[0, x, y, z, rx, ry, rz, period]` for motion, `[1, button,
 //! ...]` for press, `[2, button, ...]` for release. The daemon's axes are x right, y up, z away from the user (its
 //! default map), full deflection about 350 at sensitivity 1. Events arrive only on changes.
+//!
+//! Source: `libspnav` 1.0 (reference `hid.md`).
 
 #[cfg(unix)]
 use std::{
@@ -18,32 +20,27 @@ use crate::{Loss, Trouble, transport::Datagrams};
 
 /// The daemon's default socket.
 pub const SOCKET: &str = "/var/run/spnav.sock";
-/// Bytes of an event.
 pub const EVENT_LENGTH: usize = 32;
 const MOTION: i32 = 0;
 const PRESS: i32 = 1;
 const RELEASE: i32 = 2;
-/// Larger counts are impossible at any sensitivity.
+/// Larger counts are impossible at any sensitivity: the daemon multiplies the 350 counts of full deflection with
+/// sensitivities from its configuration.
 const POSSIBLE: u32 = 100_000;
 
-/// One event of the daemon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// x, y, z, rx, ry, rz in the daemon's axes, counts.
     Motion([i32; 6]),
     /// A button, from 0.
-    Button {
-        number: u32,
-        /// Whether it is pressed.
-        pressed: bool,
-    },
+    Button { number: u32, pressed: bool },
 }
 
 impl Event {
     /// Decodes one event.
     ///
     /// # Errors
-    /// [`BadReport`] if the length, the type or a value is not that of an event.
+    /// [`BadReport`] if the length, the type or a value do not belong to an event.
     pub fn decode(bytes: &[u8]) -> Result<Self, BadReport> {
         let bytes: &[u8; EVENT_LENGTH] = bytes.try_into().map_err(|_| BadReport::Shape)?;
         let mut words = [0_i32; 8];
@@ -59,7 +56,7 @@ impl Event {
         }
     }
 
-    /// Encodes it; `period_ms` is the time since the last motion.
+    /// Encodes the event; `period_ms` is the time since the last motion.
     pub fn encode(&self, period_ms: i32) -> [u8; EVENT_LENGTH] {
         let mut words = [0_i32; 8];
         match self {
@@ -76,7 +73,7 @@ impl Event {
         bytes
     }
 
-    /// Applies it to a cap's state; the daemon's y and z axes are exchanged.
+    /// Applies the event to a cap's state; the daemon's y and z axes are swapped.
     pub fn apply(&self, state: &mut CapState, now_s: f64) {
         match self {
             Self::Motion([x, y, z, rx, ry, rz]) => {

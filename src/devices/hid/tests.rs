@@ -1,3 +1,3 @@
-//! The codecs against known reports and random bytes.
+//! The codecs with known reports and random bytes.
 
 mod codecs;

@@ -10,7 +10,7 @@ enum Fate {
     Lost,
 }
 
-/// Number of requests remembered; a quarter of a second at 1 kHz.
+/// Number of stored requests; a quarter of a second at 1 kHz.
 const REMEMBERED: usize = 256;
 
 /// The latest cyclic requests. Calls share their numbering.
@@ -36,7 +36,8 @@ impl Cycle {
         *place = (number, Fate::Waiting);
     }
 
-    /// Records an answer with this number. True if it is the newest so far; otherwise it counts as out of order.
+    /// Records an answer with this number. Returns true if it is the newest so far; otherwise it counts as out of
+    /// order.
     pub(super) fn answered(&mut self, number: u16, health: &mut Health) -> bool {
         let place = &mut self.fates[usize::from(number) % REMEMBERED];
         let fate = if place.0 == number { std::mem::take(&mut place.1) } else { Fate::Done };

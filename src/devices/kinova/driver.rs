@@ -26,15 +26,17 @@ mod taking;
 pub use commands::{Refusal, ToolTwist, TwistFrame};
 pub(super) use leaving::close_sessions;
 
-/// Longest wait for a cyclic answer, s.
+/// Maximum wait for a cyclic answer, s: 2 ms remain of the 20 ms after which the loop takes a force away, so that the
+/// arm is named as the cause.
 const SILENT_S: f64 = 0.018;
-/// Longest wait for the answer to a call, s.
+/// Maximum wait for the answer to a call, s.
 const CALL_SILENT_S: f64 = 0.5;
 /// Interval of keep-alive messages on each connection, s (as in the manufacturer's client).
 const KEEP_ALIVE_S: f64 = 0.150;
-/// Longest wait for a change of mode, s.
+/// Maximum wait for a change of mode, s.
 const MODE_S: f64 = 1.0;
-/// Least time between two requests, s.
+/// Minimum time between two requests, s: half a period at 1 kHz, so that two ticks in quick succession do not make two
+/// requests in one cycle of the arm.
 const SPACING_S: f64 = 0.5e-3;
 
 /// Servoing mode of the arm, and changes under way.
@@ -56,10 +58,8 @@ enum Mode {
     },
 }
 
-/// A call, sent without waiting, that was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// The call.
     pub rpc: Rpc,
     pub error: u8,
     /// Sub error code; see [`words`](super::messages::sub::words).
@@ -69,7 +69,6 @@ pub struct Answer {
 /// State of the tool according to the arm's own model, in its base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolReading {
-    /// Position, m.
     pub position_m: Vector3<f64>,
     /// Orientation, with the angle convention of [`theta_rad`](super::kinematics::theta_rad).
     pub orientation: UnitQuaternion<f64>,
@@ -80,7 +79,6 @@ pub struct ToolReading {
     pub torque_nm: Vector3<f64>,
 }
 
-/// An open arm.
 #[derive(Debug)]
 pub struct Driver {
     settings: Settings,
@@ -156,7 +154,6 @@ impl Driver {
         self.mode = Mode::Leaving { number, since_s: now_s };
     }
 
-    /// Checks for timeouts.
     fn watch(&mut self, now_s: f64) {
         let over = |since_s: Option<f64>, limit_s: f64| since_s.is_some_and(|since_s| now_s - since_s > limit_s);
         if over(self.unanswered_s, SILENT_S) || over(self.call_unanswered_s, CALL_SILENT_S) {
@@ -171,7 +168,6 @@ impl Driver {
         }
     }
 
-    /// Sends a keep-alive message on both connections.
     fn keep_alive(&mut self, now_s: f64) {
         if self.alive_s.is_some_and(|alive_s| now_s - alive_s < KEEP_ALIVE_S) {
             return;
@@ -204,8 +200,8 @@ impl Driver {
         self.unanswered_s.get_or_insert(now_s);
     }
 
-    /// Sets the next joint positions. The command of every actuator must carry the number of the frame, otherwise the
-    /// arm discards it as out of date.
+    /// Sets the next joint positions. The command of every actuator must carry the number of the frame; otherwise the
+    /// arm discards it as outdated.
     fn fill_command(&mut self, elapsed_s: f64) {
         self.frame_id = self.frame_id.wrapping_add(1);
         self.command.frame_id = u32::from(self.frame_id);
@@ -236,7 +232,7 @@ impl Device for Driver {
         }
         if self.is_lost() {
             if self.mode != Mode::Single {
-                // Asked without waiting here; closing the driver waits for it.
+                // Requested without waiting; closing the driver waits for it.
                 self.ask_single_level(now_s);
             }
             return None;
@@ -255,7 +251,7 @@ impl Drop for Driver {
     }
 }
 
-/// Converts three numbers of the wire for [`ToolReading`].
+/// Converts three numbers of the protocol for [`ToolReading`].
 fn vector(numbers: &[f32], scale: f64) -> Vector3<f64> {
     Vector3::new(f64::from(numbers[0]), f64::from(numbers[1]), f64::from(numbers[2])) * scale
 }

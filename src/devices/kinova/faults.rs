@@ -2,6 +2,8 @@
 //!
 //! Bits of bank A: `Base.SafetyIdentifier` and `ActuatorConfig.SafetyIdentifierBankA` of the Kortex API. No public
 //! source names the bits of bank B, so they are shown as a number.
+//!
+//! Source: the `.proto` files in `Kinovarobotics/ros_kortex`.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -15,7 +17,7 @@ use crate::ARM_JOINTS;
 pub const JOINT_FAULT: u32 = 0x10;
 /// Base, bank A: emergency stop.
 pub const EMERGENCY_STOP: u32 = 0x80_0000;
-/// Actuator, bank A: too large a difference between command and measurement.
+/// Actuator, bank A: the difference between command and measurement is too large.
 pub const FOLLOWING_ERROR: u32 = 1;
 /// Actuator, bank A: above its range.
 pub const JOINT_LIMIT_HIGH: u32 = 4;
@@ -29,8 +31,8 @@ pub const COMMUNICATION_TICK_LOST: u32 = 0x40_0000;
 const BASE: [&str; 31] = [
     "firmware update failed",
     "external communication error",
-    "base too hot outside",
-    "base too hot inside",
+    "outside of the base too hot",
+    "inside of the base too hot",
     "fault of a joint",
     "jitter of the cyclic data",
     "event log full",
@@ -92,7 +94,7 @@ const ACTUATOR: [&str; 29] = [
     "moved too far while the brake opened",
 ];
 
-/// All faults of an arm at one time. Its `Display` gives text.
+/// All faults of an arm at one time. `Display` returns text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
     /// Whether the arm reports the state `IN_FAULT`.
@@ -104,19 +106,17 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Reads the faults from a feedback.
     pub fn of(feedback: &Feedback) -> Self {
         let in_fault = feedback.state == ArmState::IN_FAULT;
         Self { in_fault, base: feedback.banks.fault, actuators: feedback.actuators.map(|a| a.banks.fault) }
     }
 
-    /// Whether there is a fault.
     pub fn any(&self) -> bool {
         *self != Self::default()
     }
 
-    /// A single code: bank A of the first faulty joint (the likely cause), else bank A of the base, else 1 (a fault
-    /// without bits).
+    /// Returns a single code: bank A of the first faulty joint (the likely cause), else bank A of the base, else 1 (a
+    /// fault without bits).
     pub fn code(&self) -> u32 {
         let joint = self.actuators.iter().map(|bank| bank[0]).find(|bank| *bank != 0);
         joint.unwrap_or(if self.base[0] == 0 { 1 } else { self.base[0] })
@@ -151,7 +151,7 @@ impl Display for Faults {
 }
 
 impl Banks {
-    /// Banks with these faults in bank A.
+    /// Creates banks with these faults in bank A.
     pub const fn with_fault(bits: u32) -> Self {
         Self { fault: [bits, 0], warning: [0; 2] }
     }

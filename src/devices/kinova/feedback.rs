@@ -1,7 +1,9 @@
 //! The arm's cyclic feedback, decoded in place into fixed memory.
 //!
-//! `BaseCyclic.Feedback { fixed32 frame_id = 1; BaseFeedback base = 2; repeated ActuatorFeedback actuators = 3 }`; field
-//! numbers as in `BaseCyclic.proto`. Units as on the wire: degrees, metres, newtons.
+//! `BaseCyclic.Feedback { fixed32 frame_id = 1; BaseFeedback base = 2; repeated ActuatorFeedback actuators = 3 }`;
+//! field numbers as in `BaseCyclic.proto`. Units of the protocol: degrees, metres, newtons.
+//!
+//! Source: `Kinovarobotics/ros_kortex`, `kortex_driver/protos`.
 
 use super::{
     messages::ArmState,
@@ -17,7 +19,6 @@ pub struct Banks {
 }
 
 impl Banks {
-    /// Whether there is a fault.
     pub const fn is_faulty(&self) -> bool {
         self.fault[0] | self.fault[1] != 0
     }
@@ -30,7 +31,6 @@ impl Banks {
     }
 }
 
-/// Feedback of one actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuator {
     /// Number of the last command that it accepted.
@@ -43,11 +43,9 @@ pub struct Actuator {
     /// Torque, Nm, with the sign opposite to that of torque commands.
     pub torque_nm: f32,
     pub current_a: f32,
-    /// Faults.
     pub banks: Banks,
 }
 
-/// Feedback of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feedback {
     /// Number of the cycle.
@@ -59,7 +57,6 @@ pub struct Feedback {
     pub tool_twist: [f32; 6],
     /// Force and torque on the tool as the base estimates them, N and Nm.
     pub tool_wrench: [f32; 6],
-    /// Faults of the base.
     pub banks: Banks,
     /// The actuators, starting at the base.
     pub actuators: [Actuator; ARM_JOINTS],
@@ -121,7 +118,7 @@ impl Feedback {
         Ok(())
     }
 
-    /// Whether every number that is used is finite.
+    /// Returns whether every number that is used is finite.
     pub fn is_finite(&self) -> bool {
         let tool = self.tool_pose.iter().chain(&self.tool_twist).chain(&self.tool_wrench);
         tool.chain(self.actuators.iter().flat_map(|a| [&a.position_deg, &a.velocity_deg_s, &a.torque_nm]))

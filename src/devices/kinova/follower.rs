@@ -5,7 +5,7 @@ use crate::{ARM_JOINTS, Follower, Lever};
 
 impl Follower for Driver {
     fn enter_servoing(&mut self) {
-        // A refusal shows in the readings, in which the arm is not servoing.
+        // After a refusal the readings show that the arm is not servoing.
         self.enter_low_level().ok();
     }
 

@@ -33,7 +33,6 @@ pub const RESPONSE: u8 = 3;
 /// Sent by the base on its own.
 pub const NOTIFICATION: u8 = 5;
 
-/// The header of every payload.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Header {
     /// [`REQUEST`], [`RESPONSE`], [`NOTIFICATION`].
@@ -51,7 +50,7 @@ pub struct Header {
     pub function: u16,
 }
 
-/// The header as it is on the wire.
+/// The header as it is encoded.
 #[derive(Clone, Copy, PartialEq, Message)]
 struct RawHeader {
     #[prost(fixed32, tag = "1")]
@@ -65,7 +64,6 @@ struct RawHeader {
 }
 
 impl Header {
-    /// The call.
     pub const fn rpc(&self) -> Rpc {
         Rpc { service: self.service, function: self.function }
     }
@@ -104,7 +102,6 @@ impl Header {
     }
 }
 
-/// A received frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
     pub header: Header,
@@ -116,7 +113,7 @@ impl<'a> Frame<'a> {
     /// Decodes the bytes of one datagram or packet.
     ///
     /// # Errors
-    /// [`Damaged`] if structure, version or length are not those of a frame.
+    /// [`Damaged`] if structure, version or length do not belong to a frame.
     pub fn decode(bytes: &'a [u8]) -> Result<Self, Damaged> {
         let mut raw = None;
         let mut payload = [].as_slice();
@@ -183,7 +180,8 @@ pub fn packed(out: &mut Vec<u8>, frame: impl FnOnce(&mut Vec<u8>)) {
     out[length_at..length_at + LENGTH_BYTES].copy_from_slice(&length.to_be_bytes());
 }
 
-/// Longest packet accepted; the longest in use has a few hundred bytes. A longer one is skipped as damaged.
+/// Maximum length of an accepted packet; the longest in use has a few hundred bytes. A longer one is skipped as
+/// damaged.
 pub const PACKET_MAX: usize = 16 * 1024;
 
 /// Finds packets in a stream that may contain errors. Fixed memory; every byte is examined a bounded number of times.
@@ -192,7 +190,6 @@ pub struct PacketReader {
     unread: Unread,
     /// Bytes skipped while searching for a mark.
     pub skipped: u64,
-    /// Malformed packets.
     pub damaged: u64,
 }
 
@@ -206,8 +203,8 @@ impl Default for PacketReader {
 }
 
 impl PacketReader {
-    /// Buffer for new bytes; report their number with [`filled`](Self::filled). Never empty once all complete packets have
-    /// been read.
+    /// Returns the buffer for new bytes; report their number with [`filled`](Self::filled). Never empty once all
+    /// complete packets have been read.
     pub fn room(&mut self) -> &mut [u8] {
         self.unread.room()
     }
@@ -217,13 +214,13 @@ impl PacketReader {
         self.unread.filled(count);
     }
 
-    /// The next complete frame; `None` until more bytes arrive.
+    /// Returns the next complete frame; `None` until more bytes arrive.
     pub fn next_frame(&mut self) -> Option<Frame<'_>> {
         let length = self.find()?;
         Frame::decode(&self.unread.pass(PREFIX + length)[PREFIX..]).ok()
     }
 
-    /// Moves to the next whole packet, and returns the length of its frame, bytes.
+    /// Moves to the next complete packet, and returns the length of its frame, bytes.
     fn find(&mut self) -> Option<usize> {
         loop {
             self.seek();
@@ -236,13 +233,13 @@ impl PacketReader {
                     return Some(length);
                 }
             }
-            // The length may be the damaged part, so continue the search directly behind this mark.
+            // The length may be the damaged part, so continue the search directly after this mark.
             self.damaged += 1;
             self.unread.pass(MARK.len());
         }
     }
 
-    /// Moves to the next position where a mark begins, possibly cut off at the end.
+    /// Moves to the next position where a mark begins, possibly truncated at the end.
     fn seek(&mut self) {
         let waiting = self.unread.bytes();
         let begins = |at: &usize| {

@@ -216,7 +216,7 @@ fn storm(frames: u32, seed: u64) {
         while reader.next_frame().is_some() {
             packets += 1;
         }
-        assert!(!reader.room().is_empty(), "the stream goes on");
+        assert!(!reader.room().is_empty(), "the stream continues");
     }
     assert!(decoded > u64::from(frames) / 10 && packets > u64::from(frames) / 100, "{decoded} and {packets}");
 }

@@ -12,26 +12,26 @@ fn chain(joint_rad: &[f64; ARM_JOINTS]) -> Chain {
     Chain::new(&IsometryMatrix3::identity(), &Joints::from(*joint_rad))
 }
 
-/// Position and orientation of the tool in the base frame.
+/// Returns position and orientation of the tool in the base frame.
 pub fn tool(joint_rad: &[f64; ARM_JOINTS]) -> Isometry3<f64> {
     let flange = chain(joint_rad).world_from_flange;
     Isometry3::from_parts(flange.translation, UnitQuaternion::from_rotation_matrix(&flange.rotation))
 }
 
-/// The orientation angles that the arm reports for a pose, rad: `R = Rz(theta_z) Ry(theta_y) Rx(theta_x)`. No published
-/// source confirms this convention; with it the manufacturer's home pose gives 90, 0, 90 degrees.
+/// Returns the orientation angles that the arm reports for a pose, rad: `R = Rz(theta_z) Ry(theta_y) Rx(theta_x)`. No
+/// published source confirms this convention; with it the manufacturer's home pose gives 90, 0, 90 degrees.
 pub fn theta_rad(rotation: &UnitQuaternion<f64>) -> [f64; 3] {
     let (x, y, z) = rotation.euler_angles();
     [x, y, z]
 }
 
-/// Jacobian: linear (m/s) above angular (rad/s) velocity of the tool in the base frame, per joint speed.
+/// Returns the Jacobian: linear (m/s) above angular (rad/s) velocity of the tool in the base frame, per joint speed.
 pub fn jacobian(joint_rad: &[f64; ARM_JOINTS]) -> SMatrix<f64, 6, ARM_JOINTS> {
     let chain = chain(joint_rad);
     chain.jacobian(&chain.world_from_flange.translation.vector)
 }
 
-/// Joint speeds, rad/s, that move the tool with `twist` (base frame), with damping near singular poses.
+/// Returns the joint speeds, rad/s, that move the tool with `twist` (base frame), with damping near singular poses.
 pub fn joint_speeds(joint_rad: &[f64; ARM_JOINTS], twist: &Vector6<f64>) -> [f64; ARM_JOINTS] {
     const DAMPING: f64 = 1e-4;
     let jacobian = jacobian(joint_rad);

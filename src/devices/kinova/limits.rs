@@ -1,4 +1,4 @@
-//! Limits of joint commands in low-level servoing, where the arm itself checks only those of its hardware ("no
+//! Limits of joint commands in low-level servoing, where the arm itself checks only its hardware limits ("no
 //! limitations in low level control", the manufacturer's staff, kortex issue 92).
 //!
 //! Angles in rad, unwrapped; speeds in rad/s. Every command passes [`Guard`], which refuses a command beyond the limits
@@ -10,14 +10,11 @@ use nima_core::kinematics::{JointLimits, LIMIT_RAD, SPEED_RAD_S};
 
 use crate::ARM_JOINTS;
 
-/// Limits of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimit {
-    /// Lowest angle, rad; `-INFINITY` for a joint that turns without end.
+    /// Lowest angle, rad; `-INFINITY` for a continuous joint.
     pub low_rad: f64,
-    /// Highest angle, rad.
     pub high_rad: f64,
-    /// Highest speed, rad/s.
     pub speed_rad_s: f64,
 }
 
@@ -28,33 +25,31 @@ const fn limit(joint: usize) -> JointLimit {
 /// The Gen3 with 7 joints.
 pub const GEN3: [JointLimit; ARM_JOINTS] = [limit(0), limit(1), limit(2), limit(3), limit(4), limit(5), limit(6)];
 
-/// Fastest twist of the tool that is sent: linear m/s, angular rad/s (`ros_kortex` `twist_limits.yaml`).
+/// Maximum twist of the tool that is sent: linear m/s, angular rad/s (`ros_kortex` `twist_limits.yaml`).
 pub const TWIST_MAX: (f64, f64) = (0.5, 1.74);
 
-/// One step of braking covers at most this time, s: after a delay the arm continues slowly instead of catching up.
+/// Maximum time covered by one step of braking, s: after a delay the arm continues slowly instead of catching up.
 pub const STEP_MAX_S: f64 = 0.002;
 
-/// An angle in the format of the wire: degrees in [0, 360).
+/// Returns an angle in the format of the protocol: degrees in [0, 360).
 pub fn wire_degrees(angle_rad: f64) -> f32 {
     let degrees = angle_rad.to_degrees().rem_euclid(360.0) as f32;
     // An angle just below 360 can round up to 360.
     if degrees >= 360.0 { 0.0 } else { degrees }
 }
 
-/// The angle, rad, that equals this wire angle and is nearest to `near_rad`.
+/// Returns the angle, rad, that equals this protocol angle and is nearest to `near_rad`.
 pub fn unwrapped(degrees: f32, near_rad: f64) -> f64 {
     let angle_rad = f64::from(degrees).to_radians();
     angle_rad + std::f64::consts::TAU * ((near_rad - angle_rad) / std::f64::consts::TAU).round()
 }
 
-/// In any interval commands may move as far as the speed limit allows in that time plus this, s. The ticks of the loop
+/// In any interval, commands may move as far as the speed limit allows in that time plus this, s. The ticks of the loop
 /// vary by fractions of a millisecond; the slowest loop that moves an arm has a period of 20 ms.
 const AHEAD_OF_TIME_S: f64 = 0.025;
 
-/// Which limit a command exceeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Beyond {
-    /// The angle is outside the joint's range.
     #[error("outside of its range")]
     Range,
     /// Further from the last command than the speed limit allows.
@@ -78,7 +73,6 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// Creates a guard with these limits.
     pub const fn new(limits: JointLimits) -> Self {
         let rest = [0.0; ARM_JOINTS];
         Self { limits, command_rad: rest, speed_rad_s: rest, target_rad: None, allowed_s: AHEAD_OF_TIME_S }
@@ -99,8 +93,8 @@ impl Guard {
         measured_rad: &[f64; ARM_JOINTS],
     ) -> Result<(), (usize, Beyond)> {
         let last_rad = self.target_rad.unwrap_or(self.command_rad);
-        // If the arm is blocked, the plan itself stops at `lead_rad`. It then needs a distance to brake; the same again
-        // is allowed for the arm's lag.
+        // If the arm is blocked, the plan itself stops at `lead_rad`. It then needs a distance to brake; the same
+        // distance is added for the arm's lag.
         let braking_s = self.limits.braking_s();
         let mut needed_s: f64 = 0.0;
         for j in 0..ARM_JOINTS {
@@ -129,17 +123,16 @@ impl Guard {
         self.target_rad = None;
     }
 
-    /// Whether all joints are at rest.
     pub fn is_still(&self) -> bool {
         self.speed_rad_s.iter().all(|speed| *speed == 0.0)
     }
 
-    /// The present commands, rad.
+    /// Returns the current commands, rad.
     pub const fn command_rad(&self) -> &[f64; ARM_JOINTS] {
         &self.command_rad
     }
 
-    /// The commands to send, `elapsed_s` after the previous ones.
+    /// Returns the commands to send, `elapsed_s` after the previous ones.
     pub fn step(&mut self, elapsed_s: f64) -> &[f64; ARM_JOINTS] {
         if elapsed_s <= 0.0 {
             return &self.command_rad;
@@ -147,7 +140,7 @@ impl Guard {
         self.allowed_s = (self.allowed_s + elapsed_s).min(AHEAD_OF_TIME_S);
         if let Some(target_rad) = self.target_rad {
             let speed = |j: usize| (target_rad[j] - self.command_rad[j]) / elapsed_s;
-            // A command that comes early looks faster than it is.
+            // An early command looks faster than it is.
             let share = (0..ARM_JOINTS).map(|j| self.limits.speed_rad_s[j] / speed(j).abs()).fold(1.0, f64::min);
             self.speed_rad_s = std::array::from_fn(|j| speed(j) * share);
             self.command_rad = target_rad;
@@ -169,7 +162,7 @@ impl Guard {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "the guard passes commands on as they are, to the last bit")]
+#[expect(clippy::float_cmp, reason = "the guard passes commands on unchanged, to the last bit")]
 mod tests {
     use super::*;
 
@@ -216,7 +209,7 @@ mod tests {
         for fraction in [0.1, 0.3, 1.0] {
             let mut guard = resting(fraction);
             let begin = *guard.command_rad();
-            // A joint that turns without end.
+            // A continuous joint.
             let j = 2 * random.usize(..4);
             let mut jump = begin;
             jump[j] += GEN3[j].speed_rad_s * fraction * 1.01 * AHEAD_OF_TIME_S;
@@ -239,7 +232,7 @@ mod tests {
         assert_eq!(guard.aim(&[2.1; ARM_JOINTS], &[2.08; ARM_JOINTS]), Err((6, Beyond::Range)));
         assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[1.5; ARM_JOINTS]), Err((1, Beyond::Lead)));
         assert_eq!(guard.aim(&[2.085; ARM_JOINTS], &[2.08; ARM_JOINTS]), Ok(()));
-        // Pushed out by hand: moving back is allowed, moving further is not.
+        // Pushed out by hand: moving back is allowed, moving farther is not.
         guard.seed(&[2.3; ARM_JOINTS]);
         assert_eq!(guard.aim(&[2.301; ARM_JOINTS], &[2.3; ARM_JOINTS]), Err((2, Beyond::Range)));
         assert_eq!(guard.aim(&[2.299; ARM_JOINTS], &[2.3; ARM_JOINTS]), Ok(()));

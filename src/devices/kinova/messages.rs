@@ -1,11 +1,10 @@
 //! Messages and calls of the Kortex API 2.x that are used here: field numbers, ids, enumerations.
 //!
-//! Angles are in degrees, as on the wire. Sources: the `.proto` files in `Kinovarobotics/ros_kortex` (field numbers and
-//! `@RPC_ID`s) and the documentation in `Kinovarobotics/Kinova-kortex2_Gen3_G3L`.
+//! Angles are in degrees, as in the protocol. Sources: the `.proto` files in `Kinovarobotics/ros_kortex` (field numbers
+//! and `@RPC_ID`s) and the documentation in `Kinovarobotics/Kinova-kortex2_Gen3_G3L`.
 
 use prost::Message;
 
-/// A call: service and function id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rpc {
     /// Service (`@PROXY_ID`).
@@ -22,7 +21,7 @@ macro_rules! calls {
                 pub const $name: Self = Self { service: $service, function: $function };
             )*
 
-            /// Its name in the manufacturer's documentation.
+            /// Returns the name in the manufacturer's documentation.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$name => $words,)*
@@ -55,7 +54,7 @@ calls! {
     SERIAL_NUMBER = 9 / 8, "GetSerialNumber";
 }
 
-/// How the base drives the arm (`ServoingMode`).
+/// Control mode of the base (`ServoingMode`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum ServoingMode {
@@ -70,14 +69,12 @@ pub enum ServoingMode {
 pub struct ArmState(pub u32);
 
 impl ArmState {
-    /// Stopped by a fault.
     pub const IN_FAULT: Self = Self(4);
-    /// Follows cyclic commands.
     pub const SERVOING_LOW_LEVEL: Self = Self(6);
     /// Ready for high-level commands.
     pub const SERVOING_READY: Self = Self(7);
 
-    /// Text for a message.
+    /// Returns the text for a message.
     pub const fn words(self) -> &'static str {
         match self.0 {
             2 => "idle",
@@ -93,7 +90,7 @@ impl ArmState {
         }
     }
 
-    /// Whether it needs a person's action before it can be used.
+    /// Returns whether the arm needs a person's action before it can be used.
     pub const fn is_unready(self) -> bool {
         matches!(self.0, 3 | 5 | 10)
     }
@@ -121,7 +118,7 @@ pub struct CreateSessionInfo {
     pub connection_inactivity_ms: u32,
 }
 
-/// A message of one number in field 1: `ServoingModeInformation`, `ArmStateInformation`, `ActuatorInformation`,
+/// A message with one number in field 1: `ServoingModeInformation`, `ArmStateInformation`, `ActuatorInformation`,
 /// `FirmwareVersion`.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Number {
@@ -129,7 +126,7 @@ pub struct Number {
     pub value: u32,
 }
 
-/// A message of one string in field 1: `SerialNumber`, `ModelNumber`.
+/// A message with one string in field 1: `SerialNumber`, `ModelNumber`.
 #[derive(Clone, PartialEq, Message)]
 pub struct Text {
     #[prost(string, tag = "1")]
@@ -226,30 +223,22 @@ pub const ERROR_SERVER: u8 = 1;
 
 /// Sub error codes that are handled or explained here.
 pub mod sub {
-    /// Unknown service.
     pub const UNSUPPORTED_SERVICE: u16 = 4;
-    /// Unknown function.
     pub const UNSUPPORTED_METHOD: u16 = 5;
-    /// Unsupported type of frame.
     pub const UNSUPPORTED_FRAME: u16 = 10;
-    /// No session, or one that has timed out.
+    /// The session does not exist or has timed out.
     pub const INVALID_SESSION: u16 = 12;
-    /// The payload cannot be decoded.
     pub const PAYLOAD_DECODING: u16 = 13;
-    /// Wrong password.
     pub const INVALID_PASSWORD: u16 = 15;
-    /// Unknown user.
     pub const USER_NOT_FOUND: u16 = 16;
-    /// The arm is in a fault.
     pub const IN_FAULT: u16 = 22;
-    /// Emergency stop.
     pub const EMERGENCY_STOP: u16 = 25;
     /// Not possible in this servoing mode.
     pub const WRONG_SERVOING_MODE: u16 = 75;
     /// Another session has control of the arm.
     pub const NOT_IN_CONTROL: u16 = 130;
 
-    /// Text for a message.
+    /// Returns the text for a message.
     pub const fn words(code: u16) -> &'static str {
         match code {
             1 => "the call failed",
@@ -258,13 +247,13 @@ pub mod sub {
             UNSUPPORTED_SERVICE => "unknown service",
             UNSUPPORTED_METHOD => "unknown function",
             8 => "frame not understood",
-            9 => "another version of the protocol",
-            UNSUPPORTED_FRAME => "frame of another kind",
+            9 => "different version of the protocol",
+            UNSUPPORTED_FRAME => "unsupported type of frame",
             INVALID_SESSION => "no valid session",
             PAYLOAD_DECODING => "message not understood",
             INVALID_PASSWORD => "wrong password",
             USER_NOT_FOUND => "unknown user",
-            17 => "no such entity",
+            17 => "unknown entity",
             18 => "a movement is in progress",
             19 => "the arm does not move",
             20 => "no more room",
@@ -279,19 +268,19 @@ pub mod sub {
             48 => "above the maximum",
             50 => "the device is not connected",
             53 => "a safety threshold is reached",
-            54 => "this user may not",
+            54 => "not permitted for this user",
             55 => "stopped by a client",
             56 => "outside of the workspace",
-            57 => "another number of joints",
+            57 => "wrong number of joints",
             58 => "not possible in this time",
             60 => "too fast",
             65 => "beyond a joint's limit",
             WRONG_SERVOING_MODE => "wrong servoing mode",
             104 => "the user exists already",
             105 => "a user needs a name",
-            NOT_IN_CONTROL => "another session drives the arm",
+            NOT_IN_CONTROL => "another session has control of the arm",
             131 => "no answer in time",
-            _ => "an error without a name here",
+            _ => "unnamed error",
         }
     }
 }

@@ -10,8 +10,9 @@
 //! - The emulated arm, which follows commands, is `nima_simulation::emulators::kinova`.
 //!
 //! Modules without input and output: [`wire`] (decodes protobuf in place), [`frame`], [`messages`], [`feedback`],
-//! [`faults`], [`limits`], [`kinematics`]. The wire uses degrees, everything else rad. The protocol has no checksum and
-//! no time stamp: structure, versions and lengths are checked, and answers are matched by the number of their request.
+//! [`faults`], [`limits`], [`kinematics`]. The protocol uses degrees, everything else rad. The protocol has no checksum
+//! and no time stamp: structure, versions and lengths are checked, and answers are matched by the number of their
+//! request.
 
 mod cycle;
 mod driver;

@@ -1,5 +1,5 @@
-//! From a network address to a running driver: logs in, asks the arm for its identity and state. Blocks; for a thread
-//! of its own.
+//! Opens a driver at a network address: logs in and requests the arm's identity and state. Blocks, so it runs on its
+//! own thread.
 
 use std::{
     sync::{
@@ -22,8 +22,8 @@ use super::{
 };
 use crate::{ARM_JOINTS, Identity, Trouble};
 
-/// A person's request to clear the faults of an arm. It is kept until the arm is opened the next time, because an arm
-/// in fault is never connected.
+/// A person's request to clear the faults of an arm. It is kept until the arm is next opened, because an arm in fault
+/// is never connected.
 #[derive(Clone, Debug, Default)]
 pub struct FaultClearing(Arc<AtomicBool>);
 
@@ -49,7 +49,7 @@ pub fn open(settings: &Settings) -> Result<Driver, Trouble> {
 /// Opens the arm, after clearing its faults if that was requested.
 ///
 /// # Errors
-/// As [`open`].
+/// The errors of [`open`].
 pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Driver, Trouble> {
     settings.check()?;
     let mut lines = Lines::connect(settings)?;
@@ -58,7 +58,7 @@ pub fn open_clearing(settings: &Settings, clearing: &FaultClearing) -> Result<Dr
     match opened {
         Ok((identity, feedback)) => Ok(Driver::new(settings, lines, identity, &feedback)),
         Err(trouble) => {
-            // Close the sessions, or the arm would keep them until they time out.
+            // Close the sessions, because the arm would otherwise keep them until they time out.
             super::driver::close_sessions(&mut lines);
             Err(trouble)
         }
@@ -76,7 +76,7 @@ fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> 
     check_serial(settings, &identity, &lines.place)?;
     let mode: Number = ask(lines, Rpc::GET_SERVOING_MODE)?;
     if mode.value != ServoingMode::Single as u32 {
-        // The arm may have been left in low-level servoing by a client that broke off.
+        // A client that broke off may have left the arm in low-level servoing.
         call(lines, Rpc::SET_SERVOING_MODE, &Number { value: ServoingMode::Single as u32 })?;
     }
     if clearing.0.swap(false, Ordering::AcqRel) {
@@ -86,7 +86,7 @@ fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> 
     let state: Number = ask(lines, Rpc::ARM_STATE)?;
     let state = ArmState(state.value);
     if state.is_unready() {
-        let cure = "Wait until the arm has started, or end what it is doing in its web page.".to_owned();
+        let cure = "Wait until the arm has started, or end its current action in its web page.".to_owned();
         return Err(Trouble::NotReady { place: lines.place.clone(), mode: state.words().to_owned(), cure });
     }
     let feedback = first_feedback(lines)?;
@@ -95,7 +95,8 @@ fn prepare(lines: &mut Lines, settings: &Settings, clearing: &FaultClearing) -> 
         return Err(Trouble::DeviceFault {
             place: lines.place.clone(),
             words: faults.to_string(),
-            cure: "Remove the cause, make sure that the arm may move, then command it to clear its faults.".to_owned(),
+            cure: "Remove the cause, make sure that the arm can move safely, then clear its faults by command."
+                .to_owned(),
         });
     }
     Ok((identity, feedback))
@@ -116,7 +117,7 @@ fn first_feedback(lines: &mut Lines) -> Result<Feedback, Trouble> {
     feedback.ok_or_else(|| Failure::Nonsense.trouble(&lines.place, Rpc::REFRESH_FEEDBACK))
 }
 
-/// Identity of the arm; fields that the firmware does not report are empty.
+/// Returns the identity of the arm; fields that the firmware does not report are empty.
 fn identity(lines: &mut Lines) -> Result<Identity, Trouble> {
     let known = |answer: Result<Vec<u8>, Failure>, place: &str, rpc| match answer {
         Ok(payload) => Ok(payload),

@@ -1,5 +1,5 @@
-//! The two connections to an arm: numbering of messages and sessions, and calls that wait for the answer (for opening
-//! and closing) or do not.
+//! The two connections to an arm: numbering of messages and sessions, and calls that either wait for the answer (for
+//! opening and closing) or do not wait.
 
 use std::{
     net::ToSocketAddrs as _,
@@ -19,10 +19,11 @@ use crate::{
     transport::{Bytes as _, Datagrams as _, Tcp, Udp},
 };
 
-/// Largest possible datagram.
+/// Maximum size of a datagram: of UDP over IPv4, 65 535 bytes less 8 and 20 bytes of headers (RFC 768, RFC 791).
 pub const DATAGRAM_MAX: usize = 65_507;
 
-/// The arm closes a session from which it has heard nothing for this time, ms.
+/// Time without messages after which the arm closes a session, ms, as in the manufacturer's Python examples, so that a
+/// program that crashed does not block the arm for the minute of the other examples.
 const SESSION_INACTIVITY_MS: u32 = 10_000;
 /// High-level motion stops when its session has been silent for this time, ms; the shortest value in the manufacturer's
 /// examples.
@@ -45,7 +46,7 @@ impl Caller {
         Self { session: 0, message: 0, out: Vec::with_capacity(4096), packets }
     }
 
-    /// The bytes of a request, and its number. Numbers start at 1 and wrap.
+    /// Returns the bytes of a request, and its number. Numbers start at 1 and wrap.
     pub(super) fn request(&mut self, rpc: Rpc, payload: &impl Message) -> (u16, &[u8]) {
         self.message = self.message.wrapping_add(1);
         let Rpc { service, function } = rpc;
@@ -67,22 +68,17 @@ impl Caller {
     }
 }
 
-/// Why there is no valid answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// Refused with this error and sub error.
     Refused(u8, u16),
-    /// No answer in time.
     Silent,
-    /// The answer was not a frame.
     Nonsense,
-    /// The connection broke.
     Lost,
 }
 
 pub(super) type Answered<T> = Result<T, Failure>;
 
-/// Both connections.
 #[derive(Debug)]
 pub struct Lines {
     pub(super) tcp: Tcp,
@@ -112,7 +108,7 @@ impl Lines {
         Ok(Self { tcp, packets, calls: Caller::new(true), udp, cyclic: Caller::new(false), datagram, place, timeout })
     }
 
-    /// A duplicate of the TCP connection and an encoded request, for emergencies.
+    /// Returns a duplicate of the TCP connection and an encoded request, for emergencies.
     pub(super) fn last_words(&self, rpc: Rpc, question: &impl Message) -> std::io::Result<(Tcp, Vec<u8>)> {
         // A number far from those of ordinary calls, which count up from 1.
         let mut caller = Caller { session: self.calls.session, message: u16::MAX - 1, out: Vec::new(), packets: true };
@@ -151,7 +147,7 @@ impl Lines {
         self.ask_within(rpc, question, self.timeout)
     }
 
-    /// The same with another timeout.
+    /// Calls with another timeout.
     pub(super) fn ask_within(&mut self, rpc: Rpc, question: &impl Message, timeout: Duration) -> Answered<Vec<u8>> {
         let (number, bytes) = self.calls.request(rpc, question);
         self.tcp.send(bytes).map_err(|_| Failure::Lost)?;
@@ -172,12 +168,13 @@ impl Lines {
         Err(if dirty { Failure::Nonsense } else { Failure::Silent })
     }
 
-    /// Something that speaks another protocol: it answers with unknown bytes and closes the connection.
+    /// Returns the failure for a peer with another protocol: it answers with unknown bytes and closes the connection.
     const fn broken(&self, _: Loss, skipped: u64) -> Failure {
         if self.packets.skipped > skipped { Failure::Nonsense } else { Failure::Lost }
     }
 
-    /// Calls on the cyclic connection and waits for the payload of the answer; repeats the request while none comes.
+    /// Calls on the cyclic connection and waits for the payload of the answer; repeats the request until an answer
+    /// arrives.
     pub fn ask_cyclic(&mut self, rpc: Rpc, question: &impl Message) -> Answered<Vec<u8>> {
         let end = Instant::now() + self.timeout;
         let mut dirty = false;
@@ -212,7 +209,7 @@ fn payload(frame: &Frame<'_>) -> Answered<Vec<u8>> {
 }
 
 impl Failure {
-    /// The failure as a message for the user.
+    /// Returns the failure as a message for the user.
     pub(super) fn trouble(self, place: &str, rpc: Rpc) -> Trouble {
         let place = place.to_owned();
         match self {
@@ -224,7 +221,7 @@ impl Failure {
             Self::Nonsense => Trouble::WrongProduct {
                 place,
                 expected: "Kinova Gen3 (Kortex API 2)".to_owned(),
-                found: "device that speaks another protocol".to_owned(),
+                found: "device with another protocol".to_owned(),
             },
             Self::Lost => Trouble::Other { place, reason: "the connection was closed while opening".to_owned() },
         }

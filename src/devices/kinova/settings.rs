@@ -1,12 +1,9 @@
-//! Settings of the arm in a rig file.
-
 use nima_core::kinematics::JointLimits;
 use serde::{Deserialize, Serialize};
 
 use super::limits::TWIST_MAX;
 use crate::Trouble;
 
-/// Settings of the arm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
@@ -16,25 +13,24 @@ pub struct Settings {
     pub tcp_port: u16,
     /// UDP port for the cycle.
     pub udp_port: u16,
-    /// Required serial number; any if omitted. With it, arms whose cables were exchanged are told.
+    /// Required serial number; any number if omitted. It detects arms whose cables are swapped.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub serial_number: Option<String>,
     pub user: String,
     pub password: String,
-    /// Share of the arm's joint speeds that commands may use, above 0 to 1.
+    /// Fraction of the arm's joint speeds that commands may use, above 0 to 1.
     pub speed_fraction: f64,
-    /// The most that a commanded angle may be ahead of the measured one, rad, above 0 to 0.2.
+    /// Maximum lead of a commanded angle over the measured one, rad, above 0 to 0.2.
     pub lead_rad: f64,
-    /// Fastest linear twist, m/s, up to 0.5.
+    /// Maximum linear twist, m/s, up to 0.5.
     pub twist_m_s: f64,
-    /// Fastest angular twist, rad/s, up to 1.74.
+    /// Maximum angular twist, rad/s, up to 1.74.
     pub twist_rad_s: f64,
-    /// How long to wait for an answer while opening, s, 0.05 to 30.
+    /// Time limit for an answer while opening, s, 0.05 to 30.
     pub timeout_s: f64,
 }
 
 impl Default for Settings {
-    /// The factory settings of the arm.
     fn default() -> Self {
         Self {
             host: "192.168.1.10".to_owned(),
@@ -53,7 +49,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Settings for an endpoint `HOST tcp=PORT udp=PORT`, the format in which an emulator prints it.
+    /// Creates settings for an endpoint `HOST tcp=PORT udp=PORT`, the format in which an emulator prints it.
     ///
     /// ```
     /// use nima_devices::kinova::Settings;
@@ -77,7 +73,7 @@ impl Settings {
         Some(settings)
     }
 
-    /// Limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
+    /// Returns the limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
     pub fn joint_limits(&self) -> JointLimits {
         JointLimits::of_arm(self.speed_fraction, self.lead_rad)
     }
@@ -91,7 +87,7 @@ impl Settings {
             if value > low && value <= high {
                 return Ok(());
             }
-            let allowed = format!("{key} is above {low} and at most {high}");
+            let allowed = format!("above {low} and at most {high}");
             Err(Trouble::Setting { key: key.to_owned(), value: value.to_string(), allowed })
         };
         within("speed_fraction", self.speed_fraction, 0.0, 1.0)?;

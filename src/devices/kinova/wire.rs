@@ -1,13 +1,12 @@
 //! Decodes protocol buffers in place: no allocation, bounded work, every byte checked.
 //!
-//! `prost` encodes all messages and decodes the rare ones. Messages that arrive a thousand times a second are decoded
+//! `prost` encodes all messages and decodes the rare ones. Messages that arrive a thousand times per second are decoded
 //! here, because `prost` allocates for repeated fields and for errors.
 
-/// Bytes that are not a valid message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damaged;
 
-/// The value of a field on the wire.
+/// The encoded value of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value<'a> {
     Varint(u64),

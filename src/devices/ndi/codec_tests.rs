@@ -217,7 +217,7 @@ fn a_flood_without_an_end_is_thrown_away() {
     }
 }
 
-/// A reply or command, intact or altered, or random bytes.
+/// Changes a reply or command, or leaves it intact, or replaces it by random bytes.
 fn mutated(random: &mut fastrand::Rng, bytes: &mut Vec<u8>) {
     for _ in 0..random.usize(..4) {
         match random.u8(..4) {
@@ -232,7 +232,7 @@ fn mutated(random: &mut fastrand::Rng, bytes: &mut Vec<u8>) {
     }
 }
 
-/// Feeds `count` random and altered frames to everything that parses bytes. Returns how many were valid.
+/// Feeds `count` random and altered frames to everything that parses bytes. Returns the number of valid ones.
 fn fuzz(count: u32, seed: u64) -> u32 {
     let mut random = fastrand::Rng::with_seed(seed);
     let commands = every_command();

@@ -8,14 +8,13 @@ use super::{
     words::ErrorCode,
 };
 
-/// Bytes of a tool definition in one command.
+/// Bytes of a tool definition in one command: `PVWR` carries 128 hexadecimal digits (`ndicapi`).
 pub const CHUNK: usize = 64;
-/// Longest command line accepted, including CR; the one of a tool definition has 144.
+/// Maximum length of an accepted command line, including CR; the line of a tool definition has 144 bytes.
 pub const COMMAND_MAX: usize = 192;
 /// Port to request: any device, any system, passive tool, any port.
 pub const WIRELESS: [u8; 14] = *b"*********1****";
 
-/// Format of tracking replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `TX`: ASCII, four decimals.
@@ -31,11 +30,9 @@ pub const OUTSIDE_TOO: u16 = 0x0800;
 /// Reply option: stray passive markers (markers that belong to no tool).
 pub const STRAYS: u16 = 0x1000;
 
-/// Which handles `PHSR` lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     All,
-    /// Handles to be freed.
     ToFree,
     /// Occupied, not initialised.
     ToInitialise,
@@ -48,7 +45,6 @@ impl Filter {
     const ALL: [Self; 5] = [Self::All, Self::ToFree, Self::ToInitialise, Self::ToEnable, Self::Enabled];
 }
 
-/// Expected motion of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
     /// Fixed in the scene.
@@ -82,7 +78,6 @@ const SPEEDS: [(u8, u32); 9] = [
     (b'A', 230_400),
 ];
 
-/// One command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command<'a> {
     /// `INIT`: frees all handles and stops tracking.
@@ -127,17 +122,13 @@ pub enum Command<'a> {
     /// `PHINF`: information about a handle, selected by option bits.
     Information { handle: u8, options: u16 },
     /// `TSTART`: starts tracking; with option 80 the frame counter is reset.
-    Start {
-        /// Reset the frame counter.
-        anew: bool,
-    },
+    Start { anew: bool },
     /// `TSTOP`: stops tracking.
     Stop,
     /// `TX` or `BX`: requests tracking data, with reply options.
     Track(Form, u16),
 }
 
-/// An encoded command, including CR.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandLine {
     bytes: [u8; COMMAND_MAX],
@@ -145,12 +136,11 @@ pub struct CommandLine {
 }
 
 impl CommandLine {
-    /// The bytes.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes[..self.length]
     }
 
-    /// Bytes that do not fit are dropped, and the unit then refuses the command; only free text can be that long.
+    /// Drops bytes that do not fit, so that the unit refuses the command; only free text can be that long.
     fn push(&mut self, bytes: &[u8]) {
         let count = bytes.len().min(COMMAND_MAX - 5 - self.length.min(COMMAND_MAX - 5));
         self.bytes[self.length..self.length + count].copy_from_slice(&bytes[..count]);
@@ -165,7 +155,7 @@ impl CommandLine {
 }
 
 impl<'a> Command<'a> {
-    /// Its name in the API.
+    /// Returns the name in the API.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Init => "INIT",
@@ -193,7 +183,6 @@ impl<'a> Command<'a> {
         }
     }
 
-    /// Encodes it with checksum and CR.
     pub fn encode(&self) -> CommandLine {
         let mut line = self.written(b':');
         let crc = crc16(line.as_bytes());
@@ -204,7 +193,7 @@ impl<'a> Command<'a> {
         line
     }
 
-    /// Encodes it without a checksum, with CR.
+    /// Encodes the command without a checksum, with CR.
     pub fn encode_unchecked(&self) -> CommandLine {
         let mut line = self.written(b' ');
         line.bytes[line.length] = b'\r';
@@ -250,7 +239,7 @@ impl<'a> Command<'a> {
         line
     }
 
-    /// Parses a line (without its CR) as the unit does; an error is what the unit would answer.
+    /// Parses a line (without its CR) like the unit; an error is the unit's answer.
     ///
     /// # Errors
     /// [`ErrorCode`] that the unit would answer.
@@ -311,7 +300,6 @@ impl<'a> Command<'a> {
         })
     }
 
-    /// Parses the commands about handles.
     fn of_port(name: &[u8], arguments: &[u8]) -> Result<Self, ErrorCode> {
         let handle = || Ok(hex(arguments, 0, 2)? as u8);
         Ok(match name {
@@ -361,7 +349,7 @@ fn hex(arguments: &[u8], begin: usize, digits: usize) -> Result<u32, ErrorCode> 
     read_hex(text).ok_or(ErrorCode::OUT_OF_RANGE)
 }
 
-/// Parses reply options at `begin`; if there are none, the default of the guide.
+/// Parses reply options at `begin`; without options, returns the default of the guide.
 fn options(arguments: &[u8], begin: usize) -> Result<u16, ErrorCode> {
     if arguments.len() == begin { Ok(TRANSFORMS) } else { Ok(hex(arguments, begin, 4)? as u16) }
 }

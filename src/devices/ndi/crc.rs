@@ -1,10 +1,11 @@
 //! The checksum of the Combined API in both reply formats: CRC-16/ARC (polynomial 0x8005 reflected, start 0).
+//!
+//! Source: `ndicapi`; recomputed on published replies.
 
 use crc::{CRC_16_ARC, Crc};
 
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_ARC);
 
-/// Checksum of `bytes`.
 pub fn crc16(bytes: &[u8]) -> u16 {
     CRC.checksum(bytes)
 }
@@ -17,7 +18,7 @@ pub(super) fn write_hex(digits: &mut [u8], mut number: u64) {
     }
 }
 
-/// Parses hexadecimal digits (at most 8, of either case); `None` if one is not a digit.
+/// Parses hexadecimal digits (at most 8, of either case); returns `None` if one is not a digit.
 pub(super) fn read_hex(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 8 {
         return None;

@@ -6,9 +6,8 @@ use std::path::Path;
 use super::command::CHUNK;
 use crate::Trouble;
 
-/// Length of a definition as sent, padded with zeros.
+/// Length of a definition as sent, padded with zeros, as `ndicapi` does.
 pub const DEFINITION: usize = 1024;
-/// First bytes of a definition.
 const BEGIN: &[u8] = b"NDI\0";
 
 /// A tool definition in the form in which it is sent.
@@ -23,16 +22,15 @@ impl Definition {
     pub fn load(key: &str, path: &Path) -> Result<Self, Trouble> {
         let refuse = |reason: String| Trouble::File { key: key.to_owned(), path: path.display().to_string(), reason };
         let file = nima_files::read(path, DEFINITION as u64)
-            .map_err(|error| refuse(format!("the tool definition cannot be read ({error})")))?;
+            .map_err(|error| refuse(format!("the file cannot be read ({error})")))?;
         if !file.starts_with(BEGIN) {
-            return Err(refuse("it is not a tool definition of NDI (.rom, at most 1024 bytes)".to_owned()));
+            return Err(refuse("the file is not a tool definition of NDI (.rom, at most 1024 bytes)".to_owned()));
         }
         let mut bytes = Box::new([0; DEFINITION]);
         bytes[..file.len()].copy_from_slice(&file);
         Ok(Self(bytes))
     }
 
-    /// The pieces with their addresses.
     pub fn chunks(&self) -> impl Iterator<Item = (u16, [u8; CHUNK])> + '_ {
         let (chunks, _) = self.0.as_chunks::<CHUNK>();
         chunks.iter().enumerate().map(|(k, data)| ((k * CHUNK) as u16, *data))
@@ -50,7 +48,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
         assert!(Command::new("mkfifo").arg(place("pipe.rom")).status().unwrap().success());
-        // A sparse file of 1 TB: it must not be read whole.
+        // A sparse file of 1 TB, which must not be read completely.
         fs::File::create(place("large.rom")).unwrap().set_len(1 << 40).unwrap();
         let cases = [
             (place("pipe.rom"), "it is a pipe"),

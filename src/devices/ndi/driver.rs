@@ -1,8 +1,8 @@
 //! The driver: requests a frame as soon as the last reply has arrived; one command under way at a time, never waiting.
 //!
 //! Readings in m, camera frame `c`, orientation `c_from_tool`. A reading is new if its frame number is. Losses:
-//! [`Loss::Silent`] if no new frame came for [`SILENT_S`] and nothing at all for the present command; [`Loss::Corrupt`]
-//! if only bytes came that are not a reply, or [`DAMAGED_MAX`] damaged replies in a row; [`Loss::Implausible`] for
+//! [`Loss::Silent`] if no new frame arrived for [`SILENT_S`] and no byte for the current command; [`Loss::Corrupt`] if
+//! the received bytes are not a reply, or after [`DAMAGED_MAX`] consecutive damaged replies; [`Loss::Implausible`] for
 //! numbers that are not finite or impossible; [`Loss::Device`] for fault bits of the unit (`0x10000 +` system status),
 //! its errors (their code) and a restart ([`RESTARTED`]). Dropping the driver stops tracking and resets the line to its
 //! initial speed.
@@ -28,7 +28,8 @@ use crate::{
 
 /// Time limit for a new frame, and for the reply to a command, s: six frames at 60 Hz.
 pub const SILENT_S: f64 = 0.100;
-/// Number of damaged replies in a row after which the unit counts as lost.
+/// Number of consecutive damaged replies after which the unit counts as lost, so that a disturbance on a serial line
+/// does not end the tracking.
 pub const DAMAGED_MAX: u32 = 5;
 /// Code of [`Loss::Device`] for a unit that was switched off and on while tracking.
 pub const RESTARTED: u32 = 0x2_0000;
@@ -36,16 +37,15 @@ pub const RESTARTED: u32 = 0x2_0000;
 pub const SYSTEM_FAULT: u32 = 0x1_0000;
 /// Interval between two commands, s: a quarter of the frame time of the fastest unit.
 const PACE_S: f64 = 0.002;
-/// Pause after a damaged reply, s: the remainder of it may still be arriving.
+/// Pause after a damaged reply, s: its remainder may still be arriving.
 const QUIET_S: f64 = 0.010;
-/// Most reads in one poll.
+/// Maximum number of reads in one poll, so that a unit that sends without pause cannot hold up the loop.
 const READS_MAX: usize = 16;
-/// Largest plausible distance, mm; the largest measurement volume ends at 3 m.
+/// Maximum plausible distance, mm; the largest measurement volume ends at 3 m.
 const FARTHEST_MM: f64 = 6_000.0;
-/// Largest plausible deviation of a quaternion's norm from 1; rounding to four decimals gives 0.0002.
+/// Maximum plausible deviation of a quaternion's norm from 1; rounding to four decimals gives 0.0002.
 const NORM_WITHIN: f64 = 0.01;
 
-/// Whether a command is under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Flight {
     /// None; the next one may be sent at this time, s.
@@ -54,7 +54,6 @@ enum Flight {
     Asked { at_s: f64, beep: bool },
 }
 
-/// An open, tracking unit.
 #[derive(Debug)]
 pub struct Driver {
     session: Session,
@@ -65,16 +64,15 @@ pub struct Driver {
     frame_hz: f64,
     serial: bool,
     flight: Flight,
-    /// When the last byte of the present reply arrived, s; `None` before the first.
+    /// Time of arrival of the current reply's last byte, s; `None` before the first byte.
     heard_s: Option<f64>,
     damaged_in_a_row: u32,
-    /// Whether the reply to the present command was damaged.
+    /// Whether the reply to the current command was damaged.
     spoilt: bool,
     fresh_s: Option<f64>,
     frame: Option<u32>,
     frames_since_open: u64,
     beeps: u8,
-    /// Whether the last command was a beep.
     beeped: bool,
     system: SystemStatus,
     status: [PortStatus; TRACKED_TOOLS],
@@ -130,17 +128,16 @@ impl Driver {
         })
     }
 
-    /// Format of tracking replies in use.
     pub const fn form(&self) -> Form {
         self.form
     }
 
-    /// Status of the unit in the latest reply.
+    /// Returns the status of the unit in the latest reply.
     pub const fn system_status(&self) -> SystemStatus {
         self.system
     }
 
-    /// Status of each tool in the latest reply; 0 if there is none.
+    /// Returns the status of each tool in the latest reply; 0 without a tool.
     pub const fn port_status(&self) -> [PortStatus; TRACKED_TOOLS] {
         self.status
     }
@@ -151,7 +148,6 @@ impl Driver {
         self.beeps = times.min(9);
     }
 
-    /// Format of the reply that is expected.
     fn expected(&self) -> Expected {
         match (self.flight, self.form) {
             (Flight::Asked { beep: false, .. } | Flight::Idle(_), Form::Binary) => Expected::Block,
@@ -173,7 +169,6 @@ impl Driver {
         frames.map_or(Event::Damaged, Event::Frames)
     }
 
-    /// Reads what has arrived.
     fn receive(&mut self, now_s: f64) -> Result<Option<TrackerReading>, Loss> {
         let mut newest = None;
         for _ in 0..READS_MAX {
@@ -248,7 +243,7 @@ impl Driver {
         Ok(Some(reading))
     }
 
-    /// Counts a frame; true if it is later than the last one.
+    /// Counts a frame; returns true if it is later than the last one.
     fn is_new(&mut self, frame: u32, now_s: f64) -> bool {
         let ahead = self.frame.map_or(1, |last| frame.wrapping_sub(last).cast_signed());
         if ahead <= 0 {
@@ -264,7 +259,6 @@ impl Driver {
         true
     }
 
-    /// Checks for timeouts.
     fn watch(&mut self, now_s: f64) -> Result<(), Loss> {
         if let Flight::Asked { at_s, .. } = self.flight {
             if now_s - at_s >= SILENT_S {
@@ -317,7 +311,7 @@ impl Device for Driver {
                 value,
             }),
             Err(loss) => {
-                // A serial adapter that was unplugged looks the same as a silent line.
+                // An unplugged serial adapter looks the same as a silent line.
                 let gone = loss == Loss::Silent && self.session.wire.is_gone();
                 self.health.lose(if gone { Loss::Disconnected } else { loss });
                 None
@@ -331,7 +325,7 @@ impl Device for Driver {
 }
 
 impl Drop for Driver {
-    /// Waits for the present reply to pass, stops tracking, and resets the line to its initial speed for the next
+    /// Waits for the current reply to pass, stops tracking, and resets the line to its initial speed for the next
     /// session.
     fn drop(&mut self) {
         const TIMEOUT: Duration = Duration::from_millis(100);
@@ -341,7 +335,7 @@ impl Drop for Driver {
         if matches!(self.flight, Flight::Asked { .. }) {
             self.session.let_pass(TIMEOUT / 2);
         }
-        // Sent even if the unit does not answer any more.
+        // Sent even if the unit no longer answers.
         self.session.ask(&Command::Stop, TIMEOUT).ok();
         let first = Command::Comm { baud: FIRST_BAUD };
         if self.serial
@@ -353,7 +347,7 @@ impl Drop for Driver {
     }
 }
 
-/// Converts a handle to SI units; `None` for impossible numbers.
+/// Converts a handle to SI units; returns `None` for impossible numbers.
 fn tracked(told: &HandleFrame) -> Option<Tracked> {
     let out_of_volume = told.status.has(PortStatus::OUT_OF_VOLUME);
     match told.sight {

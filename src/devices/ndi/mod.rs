@@ -1,9 +1,9 @@
 //! NDI's optical and electromagnetic trackers (Polaris Spectra, Vicra, Vega; Aurora) through their Combined API.
 //!
-//! Over a network (TCP 8765) or a serial line. The wire uses mm; readings are in m, in the camera's frame `c`,
+//! Over a network (TCP 8765) or a serial line. The protocol uses mm; readings are in m, in the camera's frame `c`,
 //! orientations `c_from_tool`, scalar first. Definition files (`.rom`) describe the tools; up to four are tracked. A
 //! reading is new if its frame number is. Errors while opening are [`Trouble`](super::Trouble); for errors while
-//! running, see [`Driver`]. The codecs accept any bytes and refuse what they do not know.
+//! running, see [`Driver`]. The codecs accept any bytes and refuse unknown data.
 //!
 //! Source of the protocol: NDI's Combined API as implemented in its open-source clients. Not verified with a real unit.
 

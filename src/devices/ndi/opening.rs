@@ -1,4 +1,4 @@
-//! From a connection to a tracking unit: line speed, reset, freeing old handles, tool definitions, start (reference
+//! Prepares a connected unit for tracking: line speed, reset, freeing old handles, tool definitions, start (reference
 //! 1.3).
 
 use std::time::Duration;
@@ -22,12 +22,9 @@ use crate::{
 pub(super) const OPTIONS: u16 = TRANSFORMS | OUTSIDE_TOO;
 /// Line speed after power-on and after a reset.
 pub(super) const FIRST_BAUD: u32 = 9600;
-/// Time limits for replies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timeouts {
-    /// For commands that are answered immediately.
     quick: Duration,
-    /// For commands that take the unit some time.
     slow: Duration,
 }
 
@@ -40,11 +37,9 @@ impl Timeouts {
 
 /// Wait after `INIT` and after a change of speed, as the guide requires.
 const SETTLE: Duration = Duration::from_millis(100);
-/// Time limit for connecting.
 const CONNECT: Duration = Duration::from_secs(2);
 const BREAK: Duration = Duration::from_millis(250);
 
-/// A unit that is tracking.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub(super) session: Session,
@@ -53,7 +48,6 @@ pub(super) struct Opened {
     pub(super) handles: [Option<u8>; TRACKED_TOOLS],
 }
 
-/// Opens, configures and starts the unit.
 pub(super) fn open(settings: &Settings, timeouts: Timeouts) -> Result<Opened, Trouble> {
     settings.check()?;
     let key = |k: usize| format!("tools[{k}]");
@@ -75,12 +69,13 @@ fn over_network(place: &str, timeouts: Timeouts) -> Result<Session, Trouble> {
     Ok(session)
 }
 
-/// Finds the line speed: as the last session left it, as after power-on, or after a reset by a break.
+/// Finds the line speed: the speed of the last session, the speed after power-on, or the speed after a reset by a
+/// break.
 fn over_line(place: &str, baud: u32, timeouts: Timeouts) -> Result<Session, Trouble> {
     let line = Serial::open(&SerialSettings { port: place.to_owned(), baud })?;
     let mut session = Session::new(Wire::Serial(line));
     let told = |command, failure| trouble(place, Some(baud), command, failure);
-    // The line may still hold half a command of, or a reply to, the last session, so the first attempt may fail.
+    // The line may still contain half a command, or a reply, of the last session, so the first attempt may fail.
     let mut found = false;
     for speed in [baud, FIRST_BAUD] {
         set_baud(&mut session, speed).map_err(|failure| told("INIT", failure))?;
@@ -128,7 +123,6 @@ fn reset(session: &mut Session, timeouts: Timeouts) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Translates a failure for the user.
 fn trouble(place: &str, baud: Option<u32>, command: &str, failure: Failure) -> Trouble {
     let place = place.to_owned();
     match (failure, baud) {
@@ -137,7 +131,7 @@ fn trouble(place: &str, baud: Option<u32>, command: &str, failure: Failure) -> T
         (Failure::Garbled, None) => Trouble::WrongProduct {
             place,
             expected: "tracker with NDI's Combined API".to_owned(),
-            found: "device that answers in another way".to_owned(),
+            found: "device with another protocol".to_owned(),
         },
         (Failure::Gone, _) => Trouble::Other { place, reason: "it closed the connection".to_owned() },
         (Failure::Refused(code), _) => {
@@ -191,7 +185,8 @@ impl Opening {
         Err(Trouble::DeviceFault {
             place: self.place.clone(),
             words: format!("{} (system status {:04X})", frames.system.words(), frames.system.0),
-            cure: "Let the camera reach its temperature and check its cables; if it stays, restart it.".to_owned(),
+            cure: "Let the camera reach its operating temperature and check its cables; if this persists, restart it."
+                .to_owned(),
         })
     }
 
@@ -207,7 +202,7 @@ impl Opening {
         Ok(handle)
     }
 
-    /// Initialises tools that are plugged in. A tool can bring further handles, so the unit is asked twice.
+    /// Initialises tools that are plugged in. A tool can add further handles, so the unit is queried twice.
     fn plugged(&mut self, handles: &mut [Option<u8>; TRACKED_TOOLS]) -> Result<(), Trouble> {
         for _ in 0..2 {
             for (handle, _) in self.handles(Filter::ToInitialise)? {
@@ -220,7 +215,7 @@ impl Opening {
         Ok(())
     }
 
-    /// Handles and their status.
+    /// Returns handles and their status.
     fn handles(&mut self, filter: Filter) -> Result<Vec<(u8, PortStatus)>, Trouble> {
         let answer = self.quick(&Command::Handles(filter))?;
         handles_of(answer.as_bytes()).ok_or_else(|| self.trouble("PHSR", Failure::Garbled))

@@ -4,26 +4,25 @@
 //! Bounded memory, no allocation after [`Inbox::new`]. A binary block is recognised by its start sequence and the
 //! checksum of its header; a line by its CR. A reply with a wrong checksum is reported as [`Arrival::Damaged`] and
 //! discarded.
+//!
+//! Source: `ndicapi`, which `tests/peers` runs against the emulator.
 
 use super::crc::{crc16, read_hex};
 use crate::unread::Unread;
 
 /// First bytes of a binary reply: 0xA5C4, little-endian.
 const BINARY_START: [u8; 2] = [0xC4, 0xA5];
-/// Longest reply accepted, bytes on the wire. `TX` with 24 tools has 1700.
+/// Maximum length of an accepted reply, bytes including checksums. `TX` with 24 tools has 1700.
 pub const REPLY_MAX: usize = 4096;
 const HEADER: usize = 6;
 
-/// Format of the reply that the host is waiting for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
-    /// An ASCII line.
     Line,
     /// A binary block; or `ERRORnn`; or `RESET` if the unit was switched off and on.
     Block,
 }
 
-/// A reply found in the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival<'a> {
     /// An ASCII reply with a correct checksum; checksum and CR are removed.
@@ -48,12 +47,10 @@ impl Default for Inbox {
 }
 
 impl Inbox {
-    /// An empty buffer.
     pub fn new() -> Self {
         Self { unread: Unread::with_room(REPLY_MAX), skipped: 0 }
     }
 
-    /// Space for new bytes; never empty.
     pub fn room(&mut self) -> &mut [u8] {
         if self.unread.is_full() {
             // These bytes never became a reply.
@@ -67,17 +64,15 @@ impl Inbox {
         self.unread.filled(count);
     }
 
-    /// Discards everything received.
     pub fn clear(&mut self) {
         self.skipped += self.unread.clear() as u64;
     }
 
-    /// Number of bytes that belonged to no reply, since the last call.
+    /// Returns the number of bytes that belonged to no reply, since the last call.
     pub const fn take_skipped(&mut self) -> u64 {
         std::mem::replace(&mut self.skipped, 0)
     }
 
-    /// The next complete reply.
     pub fn next(&mut self, expected: Expected) -> Option<Arrival<'_>> {
         match expected {
             Expected::Line => self.next_line(),
@@ -120,7 +115,7 @@ impl Inbox {
     }
 }
 
-/// The text of a line with a correct checksum.
+/// Returns the text of a line with a correct checksum.
 fn checked(line: &[u8]) -> Option<&[u8]> {
     let (text, crc) = line.split_at_checked(line.len().checked_sub(4)?)?;
     (read_hex(crc) == Some(u32::from(crc16(text)))).then_some(text)
@@ -128,11 +123,8 @@ fn checked(line: &[u8]) -> Option<&[u8]> {
 
 /// Start of the buffer when a block is expected.
 enum Found {
-    /// Not a reply.
     Nothing,
-    /// Possibly an incomplete reply.
     Part,
-    /// A reply with a wrong checksum.
     Bad,
     /// A block with a body of this length, bytes.
     Block(usize),
@@ -174,7 +166,7 @@ pub fn finish_line(reply: &mut Vec<u8>) {
     reply.extend_from_slice(format!("{crc:04X}\r").as_bytes());
 }
 
-/// A binary reply with this body; more than 65535 bytes cannot be represented and are cut off.
+/// Returns a binary reply with this body; more than 65535 bytes cannot be represented and are truncated.
 pub fn block_of(body: &[u8]) -> Vec<u8> {
     let body = &body[..body.len().min(usize::from(u16::MAX))];
     let mut reply = BINARY_START.to_vec();

@@ -13,17 +13,14 @@ use crate::{
     transport::{Bytes, Serial, Tcp},
 };
 
-/// The two types of connection.
 #[derive(Debug)]
 pub(super) enum Wire {
-    /// Network connection.
     Tcp(Tcp),
-    /// Serial line.
     Serial(Serial),
 }
 
 impl Wire {
-    /// Whether the serial port no longer exists. A closed network connection is noticed when it is read.
+    /// Returns whether the serial port no longer exists. A closed network connection is detected when it is read.
     pub(super) fn is_gone(&mut self) -> bool {
         match self {
             Self::Tcp(_) => false,
@@ -48,16 +45,11 @@ impl Bytes for Wire {
     }
 }
 
-/// Why a command failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Failure {
-    /// No reply.
     Silent,
-    /// Bytes that are not a reply.
     Garbled,
-    /// The connection is closed.
     Gone,
-    /// The unit refused the command.
     Refused(ErrorCode),
 }
 
@@ -65,7 +57,6 @@ pub(super) enum Failure {
 const QUIET: Duration = Duration::from_millis(50);
 const NAP: Duration = Duration::from_micros(500);
 
-/// A connection and the bytes received over it.
 #[derive(Debug)]
 pub(super) struct Session {
     pub(super) wire: Wire,
@@ -84,7 +75,7 @@ impl Session {
         self.wait(timeout)
     }
 
-    /// The same for a command that may safely be repeated, if its reply is missing or damaged.
+    /// Sends a command that may safely be repeated, and repeats it if its reply is missing or damaged.
     pub(super) fn ask_again(&mut self, command: &Command<'_>, timeout: Duration) -> Result<String, Failure> {
         match self.ask(command, timeout) {
             Err(Failure::Silent | Failure::Garbled) => self.ask(command, timeout),
@@ -92,7 +83,6 @@ impl Session {
         }
     }
 
-    /// Waits for an ASCII reply.
     pub(super) fn wait(&mut self, timeout: Duration) -> Result<String, Failure> {
         let begin = Instant::now();
         let mut heard = begin;
@@ -133,7 +123,6 @@ impl Session {
         }
     }
 
-    /// Discards what has arrived.
     pub(super) fn drain(&mut self) -> Result<(), Failure> {
         let mut old = [0; COMMAND_MAX];
         for _ in 0..64 {

@@ -1,5 +1,3 @@
-//! Settings of the tracker in a rig file.
-
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -11,16 +9,12 @@ pub const PORT: u16 = 8765;
 /// Line speeds at which a tracking reply with four tools takes about the time of a frame or less, bit/s.
 const SPEEDS: [u32; 6] = [38_400, 57_600, 115_200, 230_400, 921_600, 1_228_739];
 
-/// Format of tracking replies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replies {
-    /// The best that the firmware supports.
     #[default]
     Auto,
-    /// `TX`.
     Text,
-    /// `BX`.
     Binary,
 }
 
@@ -36,11 +30,10 @@ pub struct Settings {
     pub baud: u32,
     /// Tool definitions (`.rom` files) of the wireless tools, in the order in which they are reported.
     pub tools: Vec<PathBuf>,
-    /// Whether tools that are plugged in are used too, after the wireless ones.
+    /// Whether plugged tools are used too, after the wireless ones.
     pub wired: bool,
-    /// Format of the tracking replies.
     pub replies: Replies,
-    /// Rate of the unit's frame counter, Hz, from which its time is computed. 60 for Polaris, 40 for Aurora.
+    /// Rate of the unit's frame counter, Hz, which determines its time. 60 for Polaris, 40 for Aurora.
     pub frame_hz: f64,
 }
 
@@ -70,13 +63,13 @@ impl Settings {
     pub fn check(&self) -> Result<(), Trouble> {
         if self.address.is_some() == self.port.is_some() {
             let value = self.address.as_deref().unwrap_or("nothing");
-            return Err(refuse("address", value, "either address (network) or port (serial line) is given"));
+            return Err(refuse("address", value, "either address (network) or port (serial line)"));
         }
         if !SPEEDS.contains(&self.baud) {
             return Err(refuse("baud", self.baud.to_string(), "38400, 57600, 115200, 230400, 921600 or 1228739"));
         }
         if self.tools.len() > TRACKED_TOOLS {
-            return Err(refuse("tools", format!("{} tools", self.tools.len()), "there are at most four"));
+            return Err(refuse("tools", format!("{} tools", self.tools.len()), "at most four"));
         }
         if self.tools.is_empty() && !self.wired {
             return Err(refuse("tools", "[]", "at least one definition, or wired = true"));
@@ -87,7 +80,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Its address, with the port number for a network connection, or its serial port.
+    /// Returns the address, with the port number for a network connection, or the serial port.
     pub fn place(&self) -> String {
         match (&self.address, &self.port) {
             (Some(address), _) if address.contains(':') => address.clone(),

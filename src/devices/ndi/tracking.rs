@@ -1,8 +1,9 @@
 //! Content of tracking replies: `BX` bodies and `TX` texts, decoded and encoded (reference 1.4, 1.5).
 //!
-//! Units of the wire: quaternions scalar first, tool in the camera's frame; translations and errors in mm. Supported
-//! reply options are 0001 (transforms), 0800 (tools outside the volume), 1000 (stray markers, which are skipped and
-//! never sent). Parsing allocates nothing and accepts any bytes; numbers are returned as they are, even if not finite.
+//! Units of the protocol: quaternions scalar first, tool in the camera's frame; translations and errors in mm.
+//! Supported reply options are 0001 (transforms), 0800 (tools outside the volume), 1000 (stray markers, which are
+//! skipped and never sent). Parsing allocates nothing and accepts any bytes; numbers are returned unchecked, even if
+//! not finite.
 
 use super::{
     command::STRAYS,
@@ -10,37 +11,31 @@ use super::{
     words::{PortStatus, SystemStatus},
 };
 
-/// Most handles in one reply.
+/// Maximum number of handles in one reply.
 pub const HANDLES_MAX: usize = 24;
 
-/// Position and orientation of a tool, in the units of the wire.
+/// Position and orientation of a tool, in the units of the protocol.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transform {
     /// Orientation of the tool in the camera's frame, scalar first.
     pub quaternion: [f64; 4],
-    /// Its origin there, mm.
+    /// Position of the tool's origin there, mm.
     pub translation_mm: [f64; 3],
     /// Root mean square error of the fit to the markers, mm.
     pub error_mm: f64,
 }
 
-/// Visibility of one tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sight {
-    /// Seen.
     Valid(Transform),
-    /// Not seen by the camera.
     #[default]
     Missing,
-    /// Not enabled.
     Disabled,
 }
 
-/// One handle in a tracking reply.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HandleFrame {
     pub handle: u8,
-    /// Whether and where it is seen.
     pub sight: Sight,
     /// Its status; 0 if it is disabled.
     pub status: PortStatus,
@@ -48,22 +43,20 @@ pub struct HandleFrame {
     pub frame: u32,
 }
 
-/// A tracking reply.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frames {
     handles: [HandleFrame; HANDLES_MAX],
     count: usize,
-    /// Status of the unit.
     pub system: SystemStatus,
 }
 
 /// The reply has a correct checksum but not the expected structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a tracking reply of an unknown shape")]
+#[error("malformed tracking reply")]
 pub struct Malformed;
 
 impl Frames {
-    /// A reply with these handles; those beyond [`HANDLES_MAX`] are dropped.
+    /// Creates a reply with these handles; those beyond [`HANDLES_MAX`] are dropped.
     pub fn new(handles: &[HandleFrame], system: SystemStatus) -> Self {
         let mut frames = Self { system, ..Self::default() };
         for one in handles {
@@ -72,7 +65,6 @@ impl Frames {
         frames
     }
 
-    /// The handles.
     pub fn handles(&self) -> &[HandleFrame] {
         &self.handles[..self.count]
     }
@@ -217,7 +209,6 @@ fn decimal_to(text: &mut Vec<u8>, digits: u32, number: f64) {
     text.extend_from_slice(format!("{whole:+0width$}", width = digits as usize + 1).as_bytes());
 }
 
-/// The part of a reply that has not been read yet.
 struct Cursor<'a>(&'a [u8]);
 
 impl<'a> Cursor<'a> {
@@ -284,7 +275,7 @@ impl<'a> Cursor<'a> {
         rest.is_some()
     }
 
-    /// Skips to the next line. Further information may stand here, after `DISABLED` also the status.
+    /// Skips to the next line. Further information may follow here, after `DISABLED` also the status.
     fn rest_of_line(&mut self) -> Result<(), Malformed> {
         let end = self.0.iter().position(|byte| *byte == b'\n').ok_or(Malformed)?;
         self.take(end + 1).map(|_| ())

@@ -6,7 +6,7 @@ use nima_files::quoted;
 use super::command::Form;
 use crate::Identity;
 
-/// Firmware versions whose `BX` is unreliable; `TX` is used with them.
+/// Firmware versions whose `BX` is unreliable and which therefore use `TX`.
 const TEXT_ONLY: [&str; 5] =
     ["AURORA Rev 007", "AURORA Rev 008", "Polaris Vega 008", "Polaris Spectra Rev 006", "Polaris Spectra Rev 007"];
 
@@ -24,7 +24,7 @@ pub fn identity_of(text: &str) -> Identity {
     }
 }
 
-/// The format of tracking replies for this firmware.
+/// Returns the format of tracking replies for this firmware.
 pub fn form_of(firmware: &str) -> Form {
     if TEXT_ONLY.contains(&firmware) { Form::Text } else { Form::Binary }
 }

@@ -1,46 +1,37 @@
-//! Text for the unit's error codes and status bits.
+//! Texts for the unit's error codes and status bits.
+//!
+//! Sources: `ndicapi` (errors) and NDI's Python client (`bx.py`, status bits); reference `ndi.md`,
+//! sections 1.7 and 1.8.
 
 /// An error reply, `ERRORnn`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ErrorCode(pub u8);
 
 impl ErrorCode {
-    /// Unknown command.
     pub const INVALID_COMMAND: Self = Self(0x01);
-    /// Command too long.
     pub const TOO_LONG: Self = Self(0x02);
-    /// Command too short.
     pub const TOO_SHORT: Self = Self(0x03);
-    /// Wrong checksum of the command.
     pub const BAD_CRC: Self = Self(0x04);
     /// Invalid line parameters.
     pub const COMM_PARAMETERS: Self = Self(0x06);
     /// Wrong number of parameters.
     pub const PARAMETER_COUNT: Self = Self(0x07);
-    /// Unknown handle.
     pub const INVALID_HANDLE: Self = Self(0x08);
     /// Priority other than S, D or B.
     pub const INVALID_PRIORITY: Self = Self(0x09);
     /// Not possible in this mode (tracking or not tracking).
     pub const INVALID_MODE: Self = Self(0x0C);
-    /// The handle has no tool.
     pub const NO_TOOL: Self = Self(0x0D);
-    /// The handle is not initialised.
     pub const NOT_INITIALISED: Self = Self(0x0E);
-    /// The handle is not enabled.
     pub const NOT_ENABLED: Self = Self(0x0F);
     /// `INIT` was not sent.
     pub const SYSTEM_NOT_INITIALISED: Self = Self(0x10);
-    /// A parameter is outside its range.
     pub const OUT_OF_RANGE: Self = Self(0x23);
-    /// No free handle.
     pub const NO_HANDLES_LEFT: Self = Self(0x2D);
-    /// Unknown user parameter.
     pub const NO_SUCH_PARAMETER: Self = Self(0x34);
-    /// The user parameter is read-only.
     pub const READ_ONLY: Self = Self(0x39);
 
-    /// Text for a message.
+    /// Returns the text for a message.
     pub const fn words(self) -> &'static str {
         match self.0 {
             0x01 => "unknown command",
@@ -48,11 +39,11 @@ impl ErrorCode {
             0x03 => "command too short",
             0x04 => "checksum of the command is wrong",
             0x05 => "the command took too long",
-            0x06 => "the line cannot be set so",
+            0x06 => "the line parameters are invalid",
             0x07 => "wrong number of parameters",
-            0x08 => "no such tool handle",
-            0x09 => "no such tracking priority",
-            0x0A | 0x0B => "no such light, or no such state of it",
+            0x08 => "unknown tool handle",
+            0x09 => "unknown tracking priority",
+            0x0A | 0x0B => "unknown light or state of a light",
             0x0C => "not possible in the current mode",
             0x0D => "the handle has no tool",
             0x0E => "the tool is not initialised",
@@ -75,23 +66,23 @@ impl ErrorCode {
             0x25 => "the features cannot be determined",
             0x28 => "too many tools, or the hardware has changed",
             0x2A => "out of memory",
-            0x2B => "the handle was not given out",
+            0x2B => "the handle was not allocated",
             0x2C => "the handle is empty now",
             0x2D => "no handle is left",
-            0x2E => "the parts' firmwares do not fit together",
-            0x2F => "no such port",
+            0x2E => "the firmware versions of the parts are incompatible",
+            0x2F => "unknown port",
             0x30 => "the port has a handle already",
             0x32 => "not possible",
             0x33 => "this feature is not available",
-            0x34 => "no such user parameter",
+            0x34 => "unknown user parameter",
             0x35..=0x38 => "the user parameter's type, range, index or size is wrong",
-            0x39 => "the user parameter cannot be written",
+            0x39 => "the user parameter is read-only",
             0x3B..=0x3D => "a file of the unit cannot be found, written or read",
             0x40 | 0x41 => "the tool definition is not usable",
             0x42 => "a part of the system is missing",
             0xF1 => "too much infrared light",
             0xF4..=0xF6 => "the unit's flash memory cannot be read, written or erased",
-            _ => "a code without a meaning in the guide",
+            _ => "undocumented error code",
         }
     }
 }
@@ -118,13 +109,11 @@ impl PortStatus {
     /// Some markers are outside the measurement volume.
     pub const PARTLY_OUT: u32 = 1 << 7;
 
-    /// Whether any of these bits is set.
     pub const fn has(self, bits: u32) -> bool {
         self.0 & bits != 0
     }
 }
 
-/// Status of the whole unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SystemStatus(pub u16);
 
@@ -140,17 +129,17 @@ impl SystemStatus {
     /// A diagnostic message is waiting (about a bump, for instance).
     pub const DIAGNOSTIC: u16 = 1 << 8;
 
-    /// The fault bits that are set; 0 without a fault.
+    /// Returns the fault bits that are set; 0 without a fault.
     pub const fn faults(self) -> u16 {
         self.0 & Self::FAULTS
     }
 
-    /// Text for the most serious fault; empty without one.
+    /// Returns the text for the most serious fault; empty without a fault.
     pub const fn words(self) -> &'static str {
         match self.0 & Self::FAULTS {
             0 => "",
             bits if bits & 1 != 0 => "its parts are out of step (communication synchronisation error)",
-            bits if bits & 1 << 3 != 0 => "it had an exception while processing",
+            bits if bits & 1 << 3 != 0 => "an exception occurred while processing",
             bits if bits & 1 << 9 != 0 => "its temperature is out of range",
             _ => "its hardware configuration has changed",
         }
@@ -165,7 +154,7 @@ mod tests {
     fn codes_and_faults_are_told_in_words() {
         assert_eq!(ErrorCode(0x0C).to_string(), "not possible in the current mode (ERROR0C)");
         assert_eq!(ErrorCode(0xEE).to_string(), "a code without a meaning in the guide (ERROREE)");
-        assert_eq!(SystemStatus(0x01C0).faults(), 0, "coming, going and messages are no faults");
+        assert_eq!(SystemStatus(0x01C0).faults(), 0, "plugging, unplugging and messages are not faults");
         for bit in [0, 3, 9, 10] {
             assert!(!SystemStatus(1 << bit).words().is_empty());
         }

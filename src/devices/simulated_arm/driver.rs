@@ -1,5 +1,3 @@
-//! Driver of the simulated arm.
-
 use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering},
@@ -10,7 +8,6 @@ use crate::{
     ARM_JOINTS, ArmReading, Device, Follower, Health, Identity, Lever, Stamped, Trouble, kinova::limits::Guard,
 };
 
-/// Whether it follows commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     Resting,
@@ -18,7 +15,6 @@ enum Mode {
     Braking,
 }
 
-/// A simulated arm.
 #[derive(Debug)]
 pub struct Driver {
     omega_rad_s: f64,
@@ -27,14 +23,13 @@ pub struct Driver {
     guard: Guard,
     mode: Mode,
     last_s: Option<f64>,
-    /// Set when the lever was pulled.
     pulled: Arc<AtomicBool>,
     health: Health,
     identity: Identity,
 }
 
 impl Driver {
-    /// An arm at rest.
+    /// Opens an arm at rest.
     ///
     /// # Errors
     /// [`Trouble::Setting`] for a value outside its range.

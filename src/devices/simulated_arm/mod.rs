@@ -1,5 +1,5 @@
-//! An arm without hardware: the joints of a Gen3, which follow their commands with a first-order lag. There is no wire
-//! and no emulator.
+//! An arm without hardware: the joints of a Gen3, which follow their commands with a first-order lag. It has no
+//! protocol and no emulator.
 //!
 //! For tests of a handle and a sensor without an arm. Commands are checked like those of the real arm
 //! ([`Guard`](crate::kinova::limits::Guard)); servoing starts one tick after the request. Angles in rad. The caller

@@ -1,5 +1,3 @@
-//! Settings of the simulated arm in a rig file.
-
 use std::f64::consts::TAU;
 
 use nima_core::kinematics::{JointLimits, Joints, limit_margin_rad};
@@ -7,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::{ARM_JOINTS, Trouble};
 
-/// Settings of the simulated arm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, tag = "make", rename = "simulated")]
 pub struct Settings {
@@ -16,10 +13,10 @@ pub struct Settings {
     /// Bandwidth of the joints, Hz, above 0 to 100.
     #[serde(default = "Settings::usual_bandwidth_hz")]
     pub bandwidth_hz: f64,
-    /// Share of the arm's joint speeds that commands may use, above 0 to 1.
+    /// Fraction of the arm's joint speeds that commands may use, above 0 to 1.
     #[serde(default = "Settings::usual_speed_fraction")]
     pub speed_fraction: f64,
-    /// The most that a commanded angle may be ahead of the measured one, rad, above 0 to 0.2.
+    /// Maximum lead of a commanded angle over the measured one, rad, above 0 to 0.2.
     #[serde(default = "Settings::usual_lead_rad")]
     pub lead_rad: f64,
 }
@@ -37,7 +34,7 @@ impl Settings {
         0.05
     }
 
-    /// Settings with these initial joint angles (rad), the other values being the defaults.
+    /// Creates settings with these initial joint angles (rad) and default values otherwise.
     pub const fn at(start_rad: [f64; ARM_JOINTS]) -> Self {
         Self {
             start_rad,
@@ -47,12 +44,12 @@ impl Settings {
         }
     }
 
-    /// Limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
+    /// Returns the limits of position, speed and acceleration: the planner keeps to them, the driver checks them.
     pub fn joint_limits(&self) -> JointLimits {
         JointLimits::of_arm(self.speed_fraction, self.lead_rad)
     }
 
-    /// Angular frequency with which the joints follow, rad/s.
+    /// Returns the angular frequency with which the joints follow, rad/s.
     pub(super) fn omega_rad_s(&self) -> f64 {
         TAU * self.bandwidth_hz
     }
@@ -70,7 +67,7 @@ impl Settings {
             return Err(refuse("start_rad", format!("{:?}", self.start_rad), allowed));
         }
         let within = |key: &str, value: f64, high: f64| {
-            let allowed = format!("{key} is above 0 and at most {high}");
+            let allowed = format!("above 0 and at most {high}");
             if value > 0.0 && value <= high { Ok(()) } else { Err(refuse(key, value.to_string(), allowed)) }
         };
         within("bandwidth_hz", self.bandwidth_hz, 100.0)?;

@@ -50,13 +50,11 @@ fn with<T, R>(line: &Shared<T>, work: impl FnOnce(&mut Line<T>) -> R) -> R {
 }
 
 impl MemoryBytes {
-    /// Two connected ends.
     pub fn pair() -> [Self; 2] {
         let [one, other]: [Shared<u8>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
-    /// Disconnects both ends.
     pub fn cut(&self) {
         with(&self.incoming, |line| line.cut = true);
         with(&self.outgoing, |line| line.cut = true);
@@ -64,13 +62,11 @@ impl MemoryBytes {
 }
 
 impl MemoryDatagrams {
-    /// Two connected ends.
     pub fn pair() -> [Self; 2] {
         let [one, other]: [Shared<Vec<u8>>; 2] = Default::default();
         [Self { incoming: Arc::clone(&one), outgoing: Arc::clone(&other) }, Self { incoming: other, outgoing: one }]
     }
 
-    /// Disconnects both ends.
     pub fn cut(&self) {
         with(&self.incoming, |line| line.cut = true);
         with(&self.outgoing, |line| line.cut = true);
@@ -104,7 +100,7 @@ impl Datagrams for MemoryDatagrams {
     fn receive(&mut self, buffer: &mut [u8]) -> Result<Option<usize>, Loss> {
         with(&self.incoming, |line| match line.queue.pop_front() {
             Some(datagram) => {
-                // As in the operating system, a datagram longer than the buffer is cut off.
+                // As in the operating system, a datagram longer than the buffer is truncated.
                 let count = datagram.len().min(buffer.len());
                 buffer[..count].copy_from_slice(&datagram[..count]);
                 Ok(Some(count))

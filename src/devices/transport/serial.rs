@@ -22,15 +22,13 @@ use crate::{Loss, Trouble};
 pub struct SerialSettings {
     /// Device file, or `COM3`.
     pub port: String,
-    /// Line speed, bit/s.
     pub baud: u32,
 }
 
-/// An open line with exclusive access.
 pub struct Serial {
     /// Used for the settings of the line.
     port: Port,
-    /// Used for its bytes. The port's own `read` allocates an error whenever nothing has arrived.
+    /// Used for the bytes. The port's own `read` allocates an error whenever nothing has arrived.
     #[cfg(unix)]
     bytes: std::fs::File,
     low_latency: bool,
@@ -72,12 +70,12 @@ impl Serial {
         }
     }
 
-    /// Whether the port's driver delivers bytes without delay instead of collecting them for up to 16 ms.
+    /// Returns whether the port's driver delivers bytes without delay instead of collecting them for up to 16 ms.
     pub const fn has_low_latency(&self) -> bool {
         self.low_latency
     }
 
-    /// A second way to write to the open line, for another thread; `None` if the system gives none.
+    /// Returns a second writer of the open line for another thread; `None` if the system does not provide one.
     pub(crate) fn another_writer(&self) -> Option<Box<dyn Write + Send>> {
         #[cfg(unix)]
         {
@@ -89,7 +87,8 @@ impl Serial {
         }
     }
 
-    /// Errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count them.
+    /// Returns the errors counted by the port's hardware (framing, parity, overrun, break); `None` if it does not count
+    /// them.
     #[cfg_attr(not(unix), expect(clippy::unused_self, reason = "only other systems count"))]
     pub fn line_errors(&self) -> Option<u32> {
         #[cfg(unix)]
@@ -110,7 +109,7 @@ impl Serial {
         self.port.set_baud_rate(baud).map_err(|_| Loss::Disconnected)
     }
 
-    /// Sends a break of this length (blocks, so for opening only).
+    /// Sends a break of this length (blocks, so only while opening).
     ///
     /// # Errors
     /// [`Loss::Disconnected`] if the port refuses or is gone.
@@ -120,7 +119,7 @@ impl Serial {
         self.port.clear_break().map_err(|_| Loss::Disconnected)
     }
 
-    /// Discards what has arrived.
+    /// Discards the data that have arrived.
     ///
     /// # Errors
     /// [`Loss::Disconnected`] if the port is gone.

@@ -9,7 +9,6 @@ use std::{
 use super::Bytes;
 use crate::{Loss, Trouble};
 
-/// An open connection.
 #[derive(Debug)]
 pub struct Tcp {
     stream: TcpStream,
@@ -29,12 +28,12 @@ impl Tcp {
         Self::of(stream).map_err(trouble)
     }
 
-    /// This computer's address on the connection.
+    /// Returns this computer's address on the connection.
     pub fn local_ip(&self) -> Option<IpAddr> {
         self.stream.local_addr().ok().map(|address| address.ip())
     }
 
-    /// A second handle of the same connection, for emergencies.
+    /// Returns a second handle of the same connection, for emergencies.
     ///
     /// # Errors
     /// If the operating system cannot duplicate the connection.

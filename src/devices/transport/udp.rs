@@ -8,7 +8,6 @@ use std::{
 use super::Datagrams;
 use crate::{Loss, Trouble};
 
-/// An open socket.
 #[derive(Debug)]
 pub struct Udp {
     socket: UdpSocket,
@@ -30,7 +29,7 @@ impl Udp {
         Self::of(socket, from).map_err(trouble)
     }
 
-    /// Whether this computer can listen at this address, which must be a single address, not the wildcard.
+    /// Returns whether this computer can listen at this address, which must be a single address, not the wildcard.
     pub fn is_local(ip: IpAddr) -> bool {
         !ip.is_unspecified() && UdpSocket::bind((ip, 0)).is_ok()
     }
@@ -51,7 +50,7 @@ impl Udp {
         Ok(Self { socket, from, sender: None, kept: false })
     }
 
-    /// The address at which it listens.
+    /// Returns the address at which the socket listens.
     pub fn local_address(&self) -> Option<SocketAddr> {
         self.socket.local_addr().ok()
     }
@@ -63,12 +62,13 @@ impl Udp {
     }
 }
 
-/// Whether a datagram was longer than the buffer, for which Windows gives an error (`WSAEMSGSIZE`) and no sender; elsewhere it is cut.
+/// Returns whether a datagram was longer than the buffer, for which Windows gives an error (`WSAEMSGSIZE`) and no
+/// sender; other systems truncate it.
 fn is_too_long(error: &std::io::Error) -> bool {
     cfg!(windows) && error.raw_os_error() == Some(10040)
 }
 
-/// Most datagrams of other senders, or longer than the buffer, that are skipped in one call.
+/// Maximum number of datagrams skipped in one call because of another sender or their length.
 const STRANGERS_MAX: usize = 16;
 
 impl Datagrams for Udp {
@@ -84,7 +84,7 @@ impl Datagrams for Udp {
                     return Ok(None);
                 }
                 Err(error) if is_too_long(&error) => {}
-                // The peer's port is closed (an ICMP answer to a datagram sent earlier).
+                // The peer's port is closed (an ICMP answer to an earlier datagram).
                 Err(_) => return Err(Loss::Disconnected),
             }
         }
@@ -102,8 +102,8 @@ impl Datagrams for Udp {
 
     fn keep_to_sender(&mut self) {
         let Some(sender) = self.sender.filter(|_| !self.kept) else { return };
-        // From here on the system drops datagrams of other senders before they use buffer space; those already waiting
-        // are dropped by this code.
+        // From here on the system drops datagrams of other senders before they use buffer space; this code drops those
+        // that already wait.
         self.kept = self.socket.connect(sender).is_ok();
     }
 }
@@ -119,7 +119,7 @@ mod tests {
 
     const HOME: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
-    /// The next datagram, with a long timeout for busy computers.
+    /// Returns the next datagram, with a long timeout for busy computers.
     fn next(udp: &mut Udp) -> Vec<u8> {
         let begin = Instant::now();
         let mut buffer = [0; 8];
@@ -168,7 +168,7 @@ mod tests {
         let [sensor, stranger] = [(), ()].map(|()| UdpSocket::bind((HOME, 0)).unwrap());
         udp.keep_to_sender();
         stranger.send_to(b"early", to).unwrap();
-        assert_eq!(next(&mut udp), b"early", "whoever has its address may be the one");
+        assert_eq!(next(&mut udp), b"early", "any program with its address may be the sender");
         sensor.send_to(b"good", to).unwrap();
         assert_eq!(next(&mut udp), b"good");
         // One arrives before the sender is chosen, the others after it.

@@ -28,7 +28,7 @@ fn bars() -> Vec<u8> {
     (0..SIZE_PX[1]).flat_map(|y| (0..SIZE_PX[0]).flat_map(move |x| colour(x / 2 * 2, y / 2 * 2))).collect()
 }
 
-/// The same picture in another layout, with rows that are longer than they need to be.
+/// The same image in another layout, with padded rows.
 fn packed(i420: &[u8], layout: Layout, [width, height]: [usize; 2], gap: usize) -> (Vec<u8>, usize) {
     let half = width.div_ceil(2);
     let (y, colours) = i420.split_at(width * height);
@@ -64,7 +64,7 @@ fn packed(i420: &[u8], layout: Layout, [width, height]: [usize; 2], gap: usize) 
     (bytes, stride)
 }
 
-/// As the standards have it, in double precision and for one pixel: nothing of it is shared with what is tested.
+/// The formulas of the standards in double precision for one pixel, independent of the tested code.
 fn reference([y, u, v]: [u8; 3], colours: Colours) -> [f64; 3] {
     let [y, u, v] = [y, u, v].map(f64::from);
     let (y, u, v) = match colours.range {
@@ -136,7 +136,7 @@ fn odd_sides_are_whole_and_what_is_missing_is_told() {
     }
 }
 
-/// Any description with any bytes is a picture or a damage.
+/// Any description with any bytes gives an image or a damage.
 fn any(seed: u64, count: usize) {
     let mut random = fastrand::Rng::with_seed(seed);
     let bytes: Vec<u8> = (0..4096).map(|_| random.u8(..)).collect();
@@ -166,7 +166,7 @@ fn fuzz_pictures_that_are_not_compressed() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: some seconds, alone"]
+#[ignore = "figures of docs/results/endoscope.md: some seconds, alone"]
 fn figures_of_colours() {
     for size_px @ [width, height] in [[1280, 720], [1920, 1080]] {
         let rgb: Vec<u8> = (0..3 * width * height).map(|at| (at * 7 / 3) as u8).collect();
@@ -188,7 +188,7 @@ fn figures_of_colours() {
 }
 
 #[test]
-#[ignore = "figure of docs/endoscope.md: the difference from ffmpeg, whose program NIMA_FFMPEG names"]
+#[ignore = "figure of docs/results/endoscope.md: the difference from ffmpeg, whose program NIMA_FFMPEG names"]
 fn figures_of_colours_beside_ffmpeg() {
     let Ok(ffmpeg) = std::env::var("NIMA_FFMPEG") else {
         unjudged::left_out("NIMA_FFMPEG names no program");
@@ -214,7 +214,8 @@ fn figures_of_colours_beside_ffmpeg() {
                 .output()
                 .unwrap();
             assert_eq!(ran.stdout.len(), 3 * SIZE_PX[0] * SIZE_PX[1], "{}", String::from_utf8_lossy(&ran.stderr));
-            // Within the bars and the grey ramp: at an edge it depends on where the colours of a pair are taken to be.
+            // Within the bars and the grey ramp: at an edge the result depends on the assumed position of a pair's
+            // colours.
             let inside = |at: usize| {
                 (6..34).contains(&(at % SIZE_PX[0] % 40)) && at / SIZE_PX[0] % 12 > 3 && at / SIZE_PX[0] < 33
             };

@@ -16,7 +16,7 @@ fn frame(value: u8) -> Vec<u8> {
     [head.as_bytes(), &jpeg, b"\r\n"].concat()
 }
 
-/// Greets a client.
+/// Answers a client's request.
 fn greet(mut stream: &TcpStream) {
     let mut request = [0; 1000];
     assert!(stream.read(&mut request).unwrap() > 0);
@@ -55,14 +55,14 @@ fn the_newest_picture_is_there_and_what_stops_is_frozen_then_lost_then_there_aga
     for number in 1..=20 {
         first.write_all(&frame(10 * number)).unwrap();
     }
-    // Not each of them is decoded, but the last one is.
+    // Some images may be skipped, but the last one is decoded.
     let look = until(&feed, "the newest", |look| value(look) == Some(200));
     assert!(look.rate_hz >= 1.0 && look.age.is_some(), "{look:?}");
     assert!(wakes.load(Ordering::Relaxed) >= 1);
     until(&feed, "frozen", |look| matches!(look.standing, Standing::Wrong(Wrong::Frozen(_))));
     drop(first);
     let lost = until(&feed, "lost", |look| matches!(look.standing, Standing::Lost(Trouble::Closed { .. })));
-    assert_eq!(value(&lost), Some(200), "the last picture stays");
+    assert_eq!(value(&lost), Some(200), "the last image stays");
     let (mut second, _) = listener.accept().unwrap();
     greet(&second);
     second.write_all(&frame(90)).unwrap();
@@ -143,5 +143,5 @@ fn another_tone_is_seen_at_once_also_in_a_picture_that_stands_still() {
     feed.set_tone(Tone { brightness: 0.2, ..Tone::default() });
     until(&feed, "brighter", |look| value(look).is_some_and(|value| value.abs_diff(151) < 3));
     feed.set_tone(Tone::default());
-    until(&feed, "as it was", |look| value(look).is_some_and(|value| value.abs_diff(100) < 3));
+    until(&feed, "unchanged", |look| value(look).is_some_and(|value| value.abs_diff(100) < 3));
 }

@@ -1,41 +1,41 @@
-//! In place of decoder and encoder, in a program that was built without them.
+//! Replaces decoder and encoder in a program built without them.
 
 use std::io;
 
 use super::{ABSENT, Taken};
 use crate::Damage;
 
-/// Says that it is not there.
+/// A decoder that always fails.
 #[derive(Debug, Default)]
 pub struct Decoder(());
 
 impl Decoder {
-    /// Nothing comes of this: there is no such decoder.
+    /// Always fails.
     ///
     /// # Errors
-    /// Always: it was not built.
+    /// Always: the feature was not built.
     pub fn take(&mut self, _: &[u8], _: bool, _: bool) -> Result<Option<Taken>, Damage> {
         Err(Damage::Undecodable { reason: ABSENT.to_owned() })
     }
 }
 
-/// Says that it is not there.
+/// An encoder that always fails.
 #[derive(Debug)]
 pub struct Encoder(());
 
 impl Encoder {
-    /// For pictures at this rate.
+    /// Always fails.
     ///
     /// # Errors
-    /// Always: it was not built.
+    /// Always: the feature was not built.
     pub fn new(_: f64) -> io::Result<Self> {
         Err(io::Error::new(io::ErrorKind::Unsupported, ABSENT))
     }
 
-    /// Nothing comes to this: there is no such encoder.
+    /// Always fails.
     ///
     /// # Errors
-    /// Always: it was not built.
+    /// Always: the feature was not built.
     pub fn encode(&mut self, _: &[u8], _: [usize; 2], _: bool) -> io::Result<Vec<u8>> {
         Err(io::Error::new(io::ErrorKind::Unsupported, ABSENT))
     }

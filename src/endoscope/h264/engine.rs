@@ -1,4 +1,4 @@
-//! Decoder and encoder, as `openh264` has them.
+//! Decoder and encoder of `openh264`.
 
 use std::{
     hash::{DefaultHasher, Hash as _, Hasher as _},
@@ -23,17 +23,17 @@ use crate::{
 };
 
 const PARAMETERS: u8 = 7;
-/// One row of so many is looked at, to tell whether a picture is the one before.
+/// One row of this many is hashed to detect a repeated image.
 const ROW_OF: usize = 4;
-/// A key picture every so many pictures: who joins late, or lost one, waits no longer.
+/// A key frame every this many frames: a client that joins late or lost a frame waits no longer.
 const KEY_EVERY: u32 = 30;
 
-/// Decodes the pictures of a stream one after the other.
+/// Decodes the frames of a stream in order.
 pub struct Decoder {
-    /// Made anew after a damage, so that nothing of it stays.
+    /// Replaced after a damage, so that no corrupt state remains.
     inner: Option<decoder::Decoder>,
     colours: Option<Colours>,
-    /// It begins with a picture that needs no other.
+    /// Waits for a key frame.
     waits: bool,
 }
 
@@ -50,10 +50,11 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// The next picture; nothing before the first that needs no other, or where one is not finished. Its pixels are made only if `wanted`.
+    /// Decodes the next frame; `None` before the first key frame, or if the frame is not complete. Its pixels are
+    /// computed only if `wanted`.
     ///
     /// # Errors
-    /// What is wrong with it; the next one that needs no other is then the first.
+    /// The fault of the frame; decoding then continues at the next key frame.
     pub fn take(&mut self, unit: &[u8], is_key: bool, wanted: bool) -> Result<Option<Taken>, Damage> {
         if self.waits && !is_key {
             return Ok(None);
@@ -97,7 +98,8 @@ fn damage(error: &openh264::Error) -> Damage {
     undecodable(&error.to_string())
 }
 
-/// What the numbers of the pictures mean. Refuses what would take too much memory, or is no camera's, before the decoder sees it.
+/// Returns the interpretation of the colours. Refuses parameters that would take too much memory or exceed any camera,
+/// before the decoder sees them.
 fn parameters(nal: &[u8]) -> Result<Colours, Damage> {
     let unreadable = || undecodable("its parameters cannot be read");
     let set = SeqParameterSet::from_bits(RefNal::new(nal, &[], true).rbsp_bits()).map_err(|_| unreadable())?;
@@ -121,7 +123,8 @@ fn parameters(nal: &[u8]) -> Result<Colours, Damage> {
     Ok(colours)
 }
 
-/// Encodes pictures as a camera does: no picture refers to a later one, and a second has one that refers to none. For emulators and tests.
+/// Encodes frames as a camera does: no frame refers to a later one, and every second has a key frame. For emulators and
+/// tests.
 pub struct Encoder {
     inner: Option<encoder::Encoder>,
     rate_hz: f64,
@@ -137,19 +140,19 @@ impl std::fmt::Debug for Encoder {
 const COLOURS: Colours = Colours { matrix: Matrix::Bt709, range: Range::Limited };
 
 impl Encoder {
-    /// For pictures at this rate.
+    /// Makes an encoder for frames at this rate.
     ///
     /// # Errors
-    /// None in a program that has it.
+    /// Never in a program built with the feature.
     pub fn new(rate_hz: f64) -> io::Result<Self> {
         Ok(Self { inner: None, rate_hz, size_px: [0; 2] })
     }
 
-    /// A picture of three bytes a pixel as an access unit (BT.709, limited range); `key` asks for one that refers to no other. A last odd row or column
-    /// is left out.
+    /// Encodes an image with three bytes per pixel as an access unit (BT.709, limited range); `key` requests a key
+    /// frame. A last odd row or column is left out.
     ///
     /// # Errors
-    /// What the library says.
+    /// The error of the library.
     pub fn encode(&mut self, rgb: &[u8], size_px: [usize; 2], key: bool) -> io::Result<Vec<u8>> {
         let [width, height] = size_px.map(|side| side & !1);
         let i420 = if [width, height] == size_px {
@@ -177,7 +180,7 @@ impl Encoder {
     }
 }
 
-/// The same quality for every picture.
+/// The same quality for every frame.
 fn config(rate_hz: f64) -> EncoderConfig {
     EncoderConfig::new()
         .skip_frames(false)

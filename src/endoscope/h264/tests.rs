@@ -3,7 +3,7 @@ use nima_testing::fuzz;
 use super::*;
 use crate::{Compressed, Damage, Format, jpeg::tests::pattern};
 
-/// Some pictures that move.
+/// A few moving images.
 fn stream(size_px: [usize; 2], count: usize) -> Vec<Vec<u8>> {
     let mut encoder = Encoder::new(30.0).unwrap();
     let picture = |number: usize| {
@@ -21,7 +21,7 @@ fn a_stream_comes_back_with_its_colours() {
         let colour = |x: usize| bar(x).map(|level| [40, 210, 120, 250][level % 4]);
         (0..size_px[0] * size_px[1]).flat_map(|at| colour(at % size_px[0])).collect()
     };
-    // The encoder says that these are colours of BT.709, which nobody would guess for so small a picture.
+    // The encoder marks the colours as BT.709, which no decoder would assume for so small an image.
     for size_px in [[128, 96], [640, 360]] {
         let mut encoder = Encoder::new(30.0).unwrap();
         let mut decoder = Decoder::default();
@@ -79,14 +79,14 @@ fn it_begins_with_a_key_picture_and_after_a_damage_with_the_next_one() {
 fn parameters_of_a_huge_picture_are_refused_before_memory_is_taken() {
     let huge = Encoder::new(30.0).unwrap().encode(&vec![90; 3 * 3840 * 2160], [3840, 2160], false).unwrap();
     assert!(Decoder::default().take(&huge, true, true).unwrap().is_some());
-    // As many macroblocks as can be written, which is what a flipped bit may come to.
+    // The maximum number of macroblocks that can be written, as a flipped bit may produce.
     let mut parameters = vec![0, 0, 0, 1, 0x67, 66, 0xc0, 52];
     parameters.extend_from_slice(&[0b1010_0000, 0x00, 0x7f, 0xff, 0x00, 0x01, 0xff, 0xf8, 0x80]);
     let told = Decoder::default().take(&[&parameters[..], &huge].concat(), true, true);
     assert!(matches!(told, Err(Damage::TooLarge { .. } | Damage::Undecodable { .. })), "{told:?}");
 }
 
-/// Damages pictures of a stream at random; gives how many were decoded.
+/// Damages frames of a stream at random; returns how many were decoded.
 fn mutate(seed: u64, count: usize) -> usize {
     let mut random = fastrand::Rng::with_seed(seed);
     let stream = stream([64, 48], 6);
@@ -135,7 +135,7 @@ fn fuzz_damaged_streams() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: some seconds, alone"]
+#[ignore = "figures of docs/results/endoscope.md: some seconds, alone"]
 fn figures_of_h264() {
     for size_px in [[1280, 720], [1920, 1080]] {
         let stream = stream(size_px, 40);

@@ -1,17 +1,17 @@
 //! NAL units and access units of a stream.
 
-/// Longest picture.
+/// Maximum size of a frame, bytes.
 const UNIT_MOST: usize = 8 << 20;
 
-/// A picture that needs no other.
+/// NAL unit type of a key frame.
 const KEY: u8 = 5;
 
-/// What a NAL unit is: 1 to 5 are parts of a picture, 7 and 8 parameters.
+/// Returns the type of a NAL unit: 1 to 5 are parts of a frame, 7 and 8 parameters.
 pub fn kind(nal: &[u8]) -> u8 {
     nal.first().map_or(0, |head| head & 0x1f)
 }
 
-/// The NAL units of a picture, without their start codes.
+/// Returns the NAL units of a frame, without their start codes.
 pub fn nal_units(unit: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = start(unit, 0).map_or(&[][..], |at| &unit[at + 3..]);
     std::iter::from_fn(move || {
@@ -21,57 +21,56 @@ pub fn nal_units(unit: &[u8]) -> impl Iterator<Item = &[u8]> {
         let next = start(rest, 0);
         let nal = &rest[..next.unwrap_or(rest.len())];
         rest = next.map_or(&[][..], |at| &rest[at + 3..]);
-        // Zeros before a start code belong to it; a NAL unit ends with none.
+        // Zeros before a start code belong to the start code; a NAL unit never ends with a zero.
         let end = nal.iter().rposition(|byte| *byte != 0).map_or(0, |at| at + 1);
         Some(&nal[..end])
     })
     .filter(|nal| !nal.is_empty())
 }
 
-/// A decoder can begin with this picture.
+/// Whether a decoder can begin with this frame.
 pub fn is_key(unit: &[u8]) -> bool {
     nal_units(unit).any(|nal| kind(nal) == KEY)
 }
 
-/// Where the next start code is, from this byte on.
+/// Returns the position of the next start code, from this byte on.
 fn start(bytes: &[u8], from: usize) -> Option<usize> {
     bytes.get(from..)?.windows(3).position(|three| three == [0, 0, 1]).map(|at| from + at)
 }
 
-/// Takes bytes as they are read and gives whole pictures.
+/// Splits bytes, as they are read, into whole frames.
 #[derive(Debug, Default)]
 pub(crate) struct Splitter {
     held: Vec<u8>,
-    /// So far it was searched.
+    /// Bytes that have been searched.
     searched: usize,
     has_picture: bool,
 }
 
 impl Splitter {
-    /// Bytes that were read.
     pub(crate) fn take(&mut self, bytes: &[u8]) {
         self.held.extend_from_slice(bytes);
     }
 
-    /// The next whole picture: it is whole when the next one begins.
+    /// Returns the next whole frame: a frame is complete when the next one begins.
     pub(crate) fn next(&mut self) -> Option<Vec<u8>> {
         loop {
             if self.held.len() > UNIT_MOST && self.searched > UNIT_MOST {
                 *self = Self::default();
             }
             let Some(at) = start(&self.held, self.searched) else {
-                // Its first bytes may be here.
+                // The first bytes of a start code may be here already.
                 self.searched = self.searched.max(self.held.len().saturating_sub(2));
                 return None;
             };
-            // The head, and the first byte behind it.
+            // The head, and the byte after it.
             let Some([head, first]) = self.held.get(at + 3..at + 5) else {
                 self.searched = at;
                 return None;
             };
             let kind = head & 0x1f;
             let is_part = (1..=5).contains(&kind);
-            // Parameters, or the first slice of a picture (whose first macroblock is number 0, coded as one bit).
+            // Parameters, or the first slice of a frame (whose first macroblock is number 0, coded as one bit).
             let begins = (6..=9).contains(&kind) || is_part && first & 0x80 != 0;
             if self.has_picture && begins {
                 let cut = if at > 0 && self.held[at - 1] == 0 { at - 1 } else { at };
@@ -85,7 +84,7 @@ impl Splitter {
         }
     }
 
-    /// What is left at the end of a stream: its last picture.
+    /// Returns the remainder at the end of a stream: its last frame.
     pub(crate) fn rest(&mut self) -> Option<Vec<u8>> {
         let last = std::mem::take(self);
         last.has_picture.then_some(last.held)
@@ -98,7 +97,7 @@ mod tests {
 
     use super::*;
 
-    /// Parameters and slices of some pictures, of two slices each.
+    /// Parameters and slices of some frames, with two slices each.
     fn stream(pictures: usize) -> Vec<Vec<u8>> {
         let picture = |number: usize| {
             let mut unit = Vec::new();

@@ -1,22 +1,22 @@
-//! Takes an answer apart as its bytes come, without input and output: head, chunks if there are any, parts.
+//! Parses a response as its bytes arrive, without I/O: head, chunks if there are any, parts.
 
 use std::collections::VecDeque;
 
 use super::{chunked::Chunked, head::Head};
 
-/// Longest picture.
+/// Maximum size of an image, bytes.
 pub(super) const PICTURE_MOST: usize = 8 << 20;
-/// Pictures that are kept for whoever reads slowly; older ones are dropped.
+/// Number of images that are kept for a slow reader; older ones are dropped.
 const PARTS_MOST: usize = 8;
 
-/// One picture as it was sent.
+/// One image with its headers, still encoded.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
     pub(super) body: Vec<u8>,
     pub(super) stamp_s: Option<f64>,
 }
 
-/// Why there will be no picture.
+/// Why there will be no more images.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Wrong {
     Status(u16),
@@ -27,22 +27,22 @@ pub(super) enum Wrong {
     Ended,
 }
 
-/// An answer, as far as it has come.
+/// The response received so far.
 #[derive(Debug, Default)]
 pub(super) struct Answer {
     state: State,
     chunked: Option<Chunked>,
     boundary: Vec<u8>,
     held: Vec<u8>,
-    /// So far `held` was searched for the next boundary.
+    /// Bytes of `held` that have been searched for the next boundary.
     searched: usize,
 }
 
-/// What a step came to.
+/// Result of a step.
 enum Step {
     /// More bytes are needed.
     Wait,
-    /// The next step can be made.
+    /// The next step is possible.
     On,
     Give(Part),
 }
@@ -58,7 +58,7 @@ enum State {
 }
 
 impl Answer {
-    /// Takes bytes as they come; adds the pictures that are whole with them.
+    /// Adds received bytes to the response; appends the images that they complete to `parts`.
     pub(super) fn take(&mut self, bytes: &[u8], parts: &mut VecDeque<Part>) -> Result<(), Wrong> {
         match &mut self.chunked {
             Some(chunked) => chunked.take(bytes, &mut self.held)?,
@@ -84,7 +84,7 @@ impl Answer {
         self.held.capacity()
     }
 
-    /// One step further.
+    /// Performs one step.
     fn step(&mut self) -> Result<Step, Wrong> {
         match std::mem::take(&mut self.state) {
             State::Head => self.head(),
@@ -151,7 +151,7 @@ impl Answer {
         }
     }
 
-    /// A picture whose length is known.
+    /// Reads an image whose length is known.
     fn counted(&mut self, head: Head, length: usize) -> Step {
         if self.held.len() < length {
             self.state = State::Body(head);
@@ -164,7 +164,7 @@ impl Answer {
         Step::Give(Part { body, stamp_s: head.stamp_s })
     }
 
-    /// A picture that ends where the next boundary is.
+    /// Reads an image that ends at the next boundary.
     fn searched_for(&mut self, head: Head) -> Result<Step, Wrong> {
         let Some(at) = self.find_boundary() else {
             self.state = State::Body(head);
@@ -173,7 +173,7 @@ impl Answer {
         };
         let rest = self.held.split_off(at);
         let mut body = std::mem::replace(&mut self.held, rest);
-        // What belongs to the boundary: a JPEG ends with neither.
+        // Remove the line break of the boundary: a JPEG never ends with one.
         while body.last().is_some_and(|byte| matches!(byte, b'\r' | b'\n' | b'-')) {
             body.pop();
         }
@@ -182,7 +182,7 @@ impl Answer {
         Ok(Step::Give(Part { body, stamp_s: head.stamp_s }))
     }
 
-    /// Where the next boundary begins, with its two dashes; what was searched is not searched again.
+    /// Returns the begin of the next boundary, with its two dashes. Searches each byte only once.
     fn find_boundary(&mut self) -> Option<usize> {
         let length = 2 + self.boundary.len();
         let is_boundary = |window: &[u8]| window.starts_with(b"--") && window[2..] == self.boundary;
@@ -205,7 +205,7 @@ impl Answer {
     }
 }
 
-/// A type as the other end wrote it, fit for a message.
+/// A content type from the other end, shortened for a message.
 fn short(kind: &str) -> String {
     kind.chars().filter(char::is_ascii_graphic).take(60).collect()
 }

@@ -1,10 +1,10 @@
-//! Takes an answer's chunks apart (RFC 9112, section 7.1).
+//! Parses the chunks of a response (RFC 9112, section 7.1).
 
 use httparse::{Status, parse_chunk_size};
 
 use super::answer::Wrong;
 
-/// A line with a length is no longer than this.
+/// Maximum length of a line with a chunk length, bytes.
 const LINE_MOST: usize = 256;
 /// A chunk is followed by the end of its line.
 const LINE_END: u64 = 2;
@@ -17,7 +17,7 @@ pub(super) struct Chunked {
 }
 
 impl Chunked {
-    /// Adds the bytes in the chunks to `out`.
+    /// Appends the bytes in the chunks to `out`.
     pub(super) fn take(&mut self, mut bytes: &[u8], out: &mut Vec<u8>) -> Result<(), Wrong> {
         while let Some((&first, rest)) = bytes.split_first() {
             if self.left == 0 {

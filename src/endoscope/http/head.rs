@@ -1,4 +1,4 @@
-//! The head of an answer, and of one part of it.
+//! The head of a response, and of one of its parts.
 
 use httparse::{EMPTY_HEADER, Error, Header, ParserConfig, Response, Status};
 
@@ -10,7 +10,7 @@ const LINES_MOST: usize = 64;
 /// A part has no status line of its own. It begins with the end of its boundary's line, which completes this one.
 const PART: &[u8] = b"HTTP/1.1 200 OK";
 
-/// What a head says; names of its lines without regard to case.
+/// Fields of a head; their names are case-insensitive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Head {
     pub(super) status: u16,
@@ -58,7 +58,7 @@ impl Head {
             match line.name.to_ascii_lowercase().as_str() {
                 "content-type" => head.content_type = Some(value.to_owned()),
                 "content-length" => {
-                    let length = value.parse().map_err(|_| Wrong::Unreadable("a length that is no number"))?;
+                    let length = value.parse().map_err(|_| Wrong::Unreadable("a length that is not a number"))?;
                     head.length = Some(length);
                 }
                 "transfer-encoding" => match value.to_ascii_lowercase().as_str() {
@@ -66,7 +66,7 @@ impl Head {
                     "identity" => {}
                     _ => return Err(Wrong::Unreadable("a compression that was not asked for")),
                 },
-                // As mjpg-streamer and others send it: seconds.
+                // Seconds, as sent by mjpg-streamer and others.
                 "x-timestamp" => head.stamp_s = value.parse().ok().filter(|stamp_s: &f64| stamp_s.is_finite()),
                 "www-authenticate" => head.challenges.push(value.to_owned()),
                 _ => {}
@@ -75,13 +75,13 @@ impl Head {
         Ok(head)
     }
 
-    /// Type and subtype, in small letters and without what follows.
+    /// Returns type and subtype, in lower case and without parameters.
     pub(super) fn kind(&self) -> String {
         let whole = self.content_type.as_deref().unwrap_or_default();
         whole.split(';').next().unwrap_or_default().trim().to_ascii_lowercase()
     }
 
-    /// What stands between the parts of an answer; cameras write it with and without dashes and quotes.
+    /// Returns the boundary between the parts of a response; cameras write it with and without dashes and quotes.
     pub(super) fn boundary(&self) -> Option<Vec<u8>> {
         let parameters = self.content_type.as_deref()?.split(';').skip(1);
         let mut boundaries = parameters.filter_map(|parameter| {

@@ -15,12 +15,11 @@ const HEAD: &str = "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; 
 fn body(number: usize) -> Vec<u8> {
     let mut body = vec![0xff, 0xd8];
     body.extend((0..50 + 37 * number).map(|at| (at * 7 + number) as u8));
-    // Something that looks like the beginning of a boundary.
+    // Bytes that look like the beginning of a boundary.
     body.extend_from_slice(b"\r\n--fram\xff\xd9");
     body
 }
 
-/// Three pictures, with or without a length.
 fn parts(with_length: bool) -> Vec<u8> {
     let mut bytes = b"\r\n".to_vec();
     for number in 0..3 {
@@ -83,7 +82,7 @@ fn habits_of_cameras_are_understood() {
     }
     let bare = [HEAD.as_bytes(), &parts(true)].concat();
     let text: Vec<u8> = bare.iter().copied().filter(|byte| *byte != b'\r').collect();
-    // Bodies lose their carriage returns too; that the lines are understood is what counts.
+    // Bodies lose their carriage returns too; the test only checks that the lines are parsed.
     assert!(taken(&text, 64).is_ok());
 }
 
@@ -123,7 +122,7 @@ fn what_is_too_long_is_refused_and_memory_stays_small() {
     assert!(taken(&[&b"HTTP/1.1 200 OK\r\nX: "[..], &vec![b'a'; 40_000]].concat(), 999).is_err());
 }
 
-/// Damages answers at random.
+/// Damages responses at random.
 fn mutate(seed: u64, count: usize) {
     let mut random = fastrand::Rng::with_seed(seed);
     let chunked = HEAD.replace("\r\n\r\n", "\r\nTransfer-Encoding: chunked\r\n\r\n");
@@ -177,7 +176,7 @@ fn endpoint(port: u16) -> Endpoint {
     Endpoint { host: "127.0.0.1".to_owned(), port, path: "/a?b".to_owned(), login: None }
 }
 
-/// A camera that answers one client so.
+/// A camera that answers one client in this way.
 fn camera(act: impl FnOnce(TcpStream) + Send + 'static) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();

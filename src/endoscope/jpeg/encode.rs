@@ -1,5 +1,5 @@
-//! A baseline JPEG encoder for emulators and tests: one quantisation and one pair of Huffman tables for all three components, colours at half the
-//! resolution (4:2:0), as cameras send. ITU-T T.81 with the tables of its annex K.
+//! A baseline JPEG encoder for emulators and tests: one quantisation and one pair of Huffman tables for all three
+//! components, colours at half the resolution (4:2:0), as sent by cameras. ITU-T T.81 with the tables of its annex K.
 
 /// Quantisation of brightness, by rows (table K.1).
 const QUANTISATION: [u16; 64] = [
@@ -7,13 +7,12 @@ const QUANTISATION: [u16; 64] = [
     87, 80, 62, 18, 22, 37, 56, 68, 109, 103, 77, 24, 35, 55, 64, 81, 104, 113, 92, 49, 64, 78, 87, 103, 121, 120, 101,
     72, 92, 95, 98, 112, 100, 103, 99,
 ];
-/// Order in which coefficients are written.
 const ZIGZAG: [usize; 64] = [
     0, 1, 8, 16, 9, 2, 3, 10, 17, 24, 32, 25, 18, 11, 4, 5, 12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6, 7, 14, 21,
     28, 35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54,
     47, 55, 62, 63,
 ];
-/// Codes of each length, and their values (table K.3).
+/// Number of codes of each length, and their values (table K.3).
 const DC_LENGTHS: [u8; 16] = [0, 1, 5, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0];
 const DC_VALUES: [u8; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
 /// The same for the other coefficients (table K.5).
@@ -29,53 +28,53 @@ const AC_VALUES: [u8; 162] = [
     0xd2, 0xd3, 0xd4, 0xd5, 0xd6, 0xd7, 0xd8, 0xd9, 0xda, 0xe1, 0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9, 0xea,
     0xf1, 0xf2, 0xf3, 0xf4, 0xf5, 0xf6, 0xf7, 0xf8, 0xf9, 0xfa,
 ];
-/// What the fast cosine transform leaves each row and column multiplied by (Arai, Agui and Nakajima 1988).
+/// Factors by which the fast cosine transform scales rows and columns (Arai, Agui and Nakajima 1988).
 const SCALES: [f32; 8] = [1.0, 1.387_039_8, 1.306_563, 1.175_875_6, 1.0, 0.785_694_96, 0.541_196_1, 0.275_899_38];
-/// A block of coefficients without one that is not zero: end of block.
+/// End of block: all remaining coefficients are zero.
 const END_OF_BLOCK: usize = 0x00;
 const SIXTEEN_ZEROS: usize = 0xf0;
-/// Side of the squares that are encoded by themselves, px, and blocks in each: four of brightness, two of colour.
+/// Side of the squares that are encoded separately, px, and blocks in each: four of brightness, two of colour.
 const SQUARE_PX: usize = 16;
 const BLOCKS: usize = 6;
-/// Code and bits of a coefficient have so many bits at most; above them stands how many.
+/// Maximum number of bits of a coefficient's code and value; the number of bits is stored above them.
 const CODE_BITS: u32 = 27;
 
 type Block = [f32; 64];
 type Codes = [(u32, u32); 256];
 
-/// Encodes a picture of three bytes a pixel, row by row, with a quality of 1 to 100.
+/// Encodes an image with three bytes per pixel, row by row, at a quality of 1 to 100.
 ///
 /// # Panics
-/// If the bytes are not those of a picture of this size, or a side is 0 or above 65535.
+/// If the bytes do not match this size, or a side is 0 or above 65535.
 pub fn encode(rgb: &[u8], size_px: [usize; 2], quality: u8) -> Vec<u8> {
     Encoder::new(size_px, quality).encode(rgb)
 }
 
-/// Encodes pictures one after the other, each whole in itself. What has not changed since the picture before costs little: a camera that
-/// looks at something that stands still, as an emulated one mostly does.
+/// Encodes a sequence of images, each complete in itself. Unchanged areas cost little, which suits emulated cameras:
+/// they mostly show a still scene.
 #[derive(Debug)]
 pub struct Encoder {
     size_px: [usize; 2],
     head: Vec<u8>,
-    /// What each coefficient is multiplied by.
+    /// Factors of the coefficients.
     shares: Block,
     dc: Codes,
     ac: Codes,
-    /// The picture before; empty if there was none.
+    /// The previous image; empty if there was none.
     before: Vec<u8>,
     blocks: Vec<Coded>,
 }
 
-/// A block as it is written, but for the code of its mean, which depends on the block before.
+/// An encoded block, without the code of its mean, which depends on the previous block.
 #[derive(Clone, Debug, Default)]
 struct Coded {
     dc: i32,
-    /// Bits, and above [`CODE_BITS`] how many.
+    /// Bits, with their number above [`CODE_BITS`].
     ac: Vec<u32>,
 }
 
 impl Encoder {
-    /// For pictures of this size, with a quality of 1 to 100.
+    /// Makes an encoder for images of this size, at a quality of 1 to 100.
     ///
     /// # Panics
     /// If a side is 0 or above 65535.
@@ -99,10 +98,10 @@ impl Encoder {
         }
     }
 
-    /// Encodes a picture of three bytes a pixel, row by row.
+    /// Encodes an image with three bytes per pixel, row by row.
     ///
     /// # Panics
-    /// If the bytes are not those of a picture of this size.
+    /// If the bytes do not match the size.
     pub fn encode(&mut self, rgb: &[u8]) -> Vec<u8> {
         let [width, height] = self.size_px;
         assert!(rgb.len() == 3 * width * height, "{} bytes for {:?}", rgb.len(), self.size_px);
@@ -122,7 +121,7 @@ impl Encoder {
         bits.end()
     }
 
-    /// Transforms the squares that are not as in the picture before.
+    /// Transforms the squares that differ from the previous image.
     fn renew(&mut self, rgb: &[u8]) {
         let [width, height] = self.size_px;
         let squares =
@@ -183,7 +182,8 @@ impl Coded {
     }
 }
 
-/// Brightness and colours of 16 x 16 pixels (BT.601, full range), around 0; beyond the picture its last pixels again.
+/// Returns brightness and colours of 16 x 16 pixels (BT.601, full range), around 0; the last pixels are repeated beyond
+/// the edge.
 fn colours(rgb: &[u8], [width, height]: [usize; 2], left: usize, top: usize) -> [[f32; 256]; 3] {
     let mut planes = [[0.0; 256]; 3];
     for row in 0..16 {
@@ -218,14 +218,14 @@ fn headers(out: &mut Vec<u8>, [width, height]: [usize; 2], steps: &[u8; 64]) {
     segment(out, 0xda, &[3, 1, 0, 2, 0, 3, 0, 0, 63, 0]);
 }
 
-/// How many bits a level takes, and these.
+/// Returns the number of bits of a level, and the bits.
 const fn size_and_bits(level: i32) -> (u32, u32) {
     let size = 32 - level.unsigned_abs().leading_zeros();
     let bits = if level < 0 { level - 1 } else { level }.cast_unsigned();
     (size, bits & ((1 << size) - 1))
 }
 
-/// Code and length of each value.
+/// Returns code and length of each value.
 fn codes(lengths: &[u8; 16], values: &[u8]) -> Codes {
     let mut codes = [(0, 0); 256];
     let mut code = 0;
@@ -260,7 +260,7 @@ impl Bits {
         }
     }
 
-    /// The code of a level's size, and its bits.
+    /// Returns the code of a level's size, followed by its bits.
     fn coded(&mut self, codes: &Codes, level: i32) {
         let (size, bits) = size_and_bits(level);
         let (code, length) = codes[size as usize];
@@ -277,7 +277,7 @@ impl Bits {
     }
 }
 
-/// The cosine transform of rows and then of columns, each coefficient multiplied by its [`SCALES`] and by 8.
+/// Cosine transform of rows and then of columns, each coefficient multiplied by its [`SCALES`] and by 8.
 fn transform(block: &mut Block) {
     for row in 0..8 {
         line(block, 8 * row, 1);
@@ -287,7 +287,7 @@ fn transform(block: &mut Block) {
     }
 }
 
-/// One row or column of the transform of Arai, Agui and Nakajima.
+/// Transforms one row or column (Arai, Agui and Nakajima).
 fn line(block: &mut Block, first: usize, step: usize) {
     let d: [f32; 8] = std::array::from_fn(|i| block[first + i * step]);
     let sums: [f32; 4] = std::array::from_fn(|i| d[i] + d[7 - i]);
@@ -320,7 +320,7 @@ mod tests {
 
     #[test]
     fn what_is_decoded_is_what_was_encoded() {
-        // Sides that are no multiple of a block, too.
+        // Including sides that are not multiples of a block.
         for size_px in [[64, 48], [640, 361], [17, 9], [1, 1]] {
             // No fine colours: they have half the resolution.
             let grey: Vec<u8> =

@@ -1,41 +1,40 @@
-//! Finds whole JPEGs in a file that has one after the other.
+//! Finds whole JPEGs in a file that contains a sequence of them.
 
-/// Longest picture of a file.
+/// Maximum size of an image in a file, bytes.
 const JPEG_MOST: usize = 8 << 20;
 
-/// Takes bytes as they are read and gives whole pictures. What is no picture is passed over; a picture that is too long is given up.
+/// Splits bytes, as they are read, into whole images. Other data are skipped; an image that is too long is dropped.
 #[derive(Debug, Default)]
 pub(crate) struct Splitter {
     held: Vec<u8>,
-    /// How far the picture at the beginning of `held` was followed.
+    /// Parsed bytes of the image at the beginning of `held`.
     followed: usize,
     state: State,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum State {
-    /// Before the beginning of a picture.
+    /// Before the beginning of an image.
     #[default]
     Before,
     /// Between segments, whose lengths are known.
     Segments,
-    /// In the coded picture, which ends at a marker.
+    /// In the coded image data, which end at a marker.
     Coded,
 }
 
 impl Splitter {
-    /// Bytes that were read.
     pub(crate) fn take(&mut self, bytes: &[u8]) {
         self.held.extend_from_slice(bytes);
     }
 
-    /// The next whole picture, if it is here.
+    /// Returns the next whole image, if it is complete.
     pub(crate) fn next(&mut self) -> Option<Vec<u8>> {
         loop {
             match self.state {
                 State::Before => {
                     let begin = self.held.windows(2).position(|two| two == [0xff, 0xd8]);
-                    // The last byte may be the first half of a beginning.
+                    // The last byte may be the first half of a start marker.
                     let until = begin.unwrap_or(self.held.len().saturating_sub(1));
                     self.held.drain(..until);
                     begin?;
@@ -79,14 +78,14 @@ impl Splitter {
         }
     }
 
-    /// Takes the picture that ends with the marker after `followed`.
+    /// Removes the image that ends with the marker after `followed`.
     fn cut(&mut self) -> Vec<u8> {
         let rest = self.held.split_off(self.followed + 2);
         self.state = State::Before;
         std::mem::replace(&mut self.held, rest)
     }
 
-    /// It was no picture: looks for another beginning behind this one.
+    /// Drops a false start and searches for the next one.
     fn give_up(&mut self) {
         self.held.drain(..2);
         self.state = State::Before;

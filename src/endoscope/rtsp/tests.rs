@@ -19,7 +19,8 @@ fn endpoint(port: u16) -> Endpoint {
     Endpoint { host: "127.0.0.1".to_owned(), port, path: "/s".to_owned(), login: None }
 }
 
-/// What a camera answers to DESCRIBE, SETUP and PLAY; `N` stands for the number of the request. Some pictures, and a report, follow the last one.
+/// A camera's responses to DESCRIBE, SETUP and PLAY; `N` is replaced by the number of the request. Some images and a
+/// report follow the last response.
 fn answers(encoding: &str) -> [Vec<u8>; 3] {
     let body = format!(
         "v=0\r\no=- 0 0 IN IP4 127.0.0.1\r\ns=x\r\nt=0 0\r\na=control:*\r\nm=audio 0 RTP/AVP 0\r\na=control:a\r\nm=video 0 RTP/AVP 96\r\n\
@@ -50,7 +51,7 @@ fn answers(encoding: &str) -> [Vec<u8>; 3] {
             packets.push((0, [&head, *nal].concat()));
         }
         if number == 1 {
-            // Its clock says 2.5 s since 1970.
+            // The sender's clock says 2.5 s since 1970.
             let mut report = vec![0x80, 200, 0, 6, 0, 0, 0, 9];
             report.extend_from_slice(&(2_208_988_802_u32).to_be_bytes());
             report.extend_from_slice(&(1_u32 << 31).to_be_bytes());
@@ -67,10 +68,10 @@ fn answers(encoding: &str) -> [Vec<u8>; 3] {
     [described.into_bytes(), set_up.as_bytes().to_vec(), bytes]
 }
 
-/// Answers one client with these, one after the other, and closes.
+/// Sends these responses to one client in order, and closes the connection.
 fn serve(stream: &mut TcpStream, answers: &[Vec<u8>]) {
     stream.set_nodelay(true).ok();
-    // A client that waits for the answer to another request does not get it.
+    // A client that waits for the response to another request does not get it.
     stream.set_read_timeout(Some(Duration::from_millis(20))).ok();
     for answer in answers {
         let mut request = Vec::new();
@@ -147,7 +148,7 @@ fn each_cause_is_told_with_its_cure() {
 #[test]
 fn a_client_that_panics_ends_what_was_asked_for_and_not_the_thread() {
     let told = guarded::<()>("cam:554", || panic!("as the client does")).unwrap_err();
-    assert_eq!(told.to_string(), "cam:554 sends what cannot be read: an answer that cannot be taken apart");
+    assert_eq!(told.to_string(), "cam:554 sends an unreadable response: a response that cannot be parsed");
 }
 
 #[test]
@@ -159,7 +160,7 @@ fn a_description_whose_lines_are_out_of_order_is_told() {
     assert!(told.contains("cannot be"), "{told}");
 }
 
-/// So many conversations with a camera whose answers are damaged at random; gives how many pictures came.
+/// Runs this many conversations with a camera whose responses are damaged at random; returns how many images arrived.
 fn mutate(seed: u64, count: usize) -> usize {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -206,7 +207,7 @@ fn damaged_answers_never_panic() {
 #[test]
 #[ignore = "as long as ./dev fuzz asks for"]
 fn fuzz_damaged_conversations() {
-    // They wait for each other most of the time.
+    // The threads wait for each other most of the time.
     let rounds = fuzz::rounds(|seed| {
         thread::scope(|scope| {
             for lane in 0..10 {

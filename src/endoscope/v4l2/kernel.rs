@@ -1,4 +1,4 @@
-//! The system calls: one thin implementation, and the trait behind which a test puts a table of its own.
+//! The system calls: a thin implementation, and a trait that a test replaces by a table.
 #![expect(unsafe_code, reason = "ioctl, mmap, poll and a clock have no safe interface in std")]
 
 use std::{
@@ -13,17 +13,17 @@ use std::{
 
 use super::layout::Request;
 
-/// What a camera is asked through.
+/// The system calls on a camera.
 pub(super) trait Kernel: Send {
-    /// One request with its structure, which is as long as the request says.
+    /// Sends a request with its structure, whose length the request defines.
     fn ioctl(&mut self, request: Request, structure: &mut [u8]) -> Result<()>;
-    /// Makes the next buffer visible, which the driver has at this offset.
+    /// Maps the next buffer, which the driver has at this offset.
     fn map(&mut self, offset: u32, length: usize) -> Result<()>;
-    /// The first bytes of a buffer that the driver has given back.
+    /// Returns the first bytes of a buffer that the driver has returned.
     fn copy(&self, buffer: usize, length: usize) -> Vec<u8>;
-    /// Waits until something can be asked for, so long at most.
+    /// Waits until data are available, at most this long.
     fn wait(&mut self, longest: Duration) -> Result<()>;
-    /// The monotonic clock, by which the driver stamps.
+    /// The monotonic clock, which the driver uses for its time stamps.
     fn now(&self) -> Duration;
 }
 
@@ -44,7 +44,7 @@ unsafe impl Send for Buffer {}
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        // SAFETY: the range is that of one successful mmap, and nothing refers to it: `copy` gives copies only.
+        // SAFETY: the range comes from one successful mmap, and no reference to it exists: `copy` returns copies only.
         unsafe { libc::munmap(self.begin.as_ptr(), self.length) };
     }
 }
@@ -62,7 +62,7 @@ impl Kernel for Device {
             return Err(Error::from(ErrorKind::InvalidInput));
         }
         loop {
-            // SAFETY: the kernel reads and writes as many bytes as the request's code says, and the structure has just that length; it has no pointers.
+            // SAFETY: the kernel reads and writes the number of bytes in the request code, which is the size of the structure; it has no pointers.
             let answer = unsafe {
                 libc::ioctl(self.file.as_raw_fd(), libc::Ioctl::from(request.code()), structure.as_mut_ptr())
             };
@@ -77,7 +77,7 @@ impl Kernel for Device {
     }
 
     fn map(&mut self, offset: u32, length: usize) -> Result<()> {
-        // SAFETY: a new mapping at a place of the kernel's choice; what is wrong with offset or length is its error.
+        // SAFETY: the kernel chooses the address of the new mapping and refuses a wrong offset or length.
         let begin = unsafe {
             libc::mmap(
                 std::ptr::null_mut(),
@@ -100,15 +100,15 @@ impl Kernel for Device {
         let Some(Buffer { begin, length: most }) = self.buffers.get(buffer) else { return Vec::new() };
         let length = length.min(*most);
         let mut bytes = vec![0; length];
-        // SAFETY: both ranges are `length` bytes at least and do not overlap. While the buffer is ours the driver does not write to it; if it
-        // did, bytes of two pictures would be mixed, and no reference to them exists.
+        // SAFETY: both ranges have at least `length` bytes and do not overlap. While the buffer is ours the driver does not write to it; if it
+        // did, bytes of two images would be mixed; no reference to the range exists.
         unsafe { std::ptr::copy_nonoverlapping(begin.as_ptr().cast::<u8>(), bytes.as_mut_ptr(), length) };
         bytes
     }
 
     fn wait(&mut self, longest: Duration) -> Result<()> {
         let mut watched = libc::pollfd { fd: self.file.as_raw_fd(), events: libc::POLLIN, revents: 0 };
-        // SAFETY: one descriptor, which is open, in one structure.
+        // SAFETY: one structure with one open descriptor.
         let answer = unsafe { libc::poll(&raw mut watched, 1, longest.as_millis() as i32) };
         let error = Error::last_os_error();
         if answer < 0 && error.kind() != ErrorKind::Interrupted { Err(error) } else { Ok(()) }

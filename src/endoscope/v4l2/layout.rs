@@ -1,22 +1,22 @@
-//! The structures of <linux/videodev2.h> on 64-bit systems, as bytes: where each number lies, and which request takes which structure.
+//! The structures of <linux/videodev2.h> on 64-bit systems, as bytes: the offset of each number, and the structure of
+//! each request.
 
-/// A buffer for a picture: of a device that captures, in memory of the driver.
+/// Buffer type of a capture device; the memory belongs to the driver.
 pub(super) const CAPTURE: u32 = 1;
 pub(super) const MEMORY_MMAP: u32 = 1;
 
-/// Capabilities of a device.
 pub(super) const CAN_CAPTURE: u32 = 0x1;
 pub(super) const CAN_CAPTURE_PLANES: u32 = 0x1000;
 pub(super) const CAN_STREAM: u32 = 0x0400_0000;
-/// The capabilities of this node stand in a field of their own.
+/// The capabilities of this node are in a separate field.
 pub(super) const HAS_OWN: u32 = 0x8000_0000;
 
-/// What a filled buffer says of itself.
+/// Flags of a filled buffer.
 pub(super) const DAMAGED: u32 = 0x40;
 pub(super) const CLOCK_MASK: u32 = 0xe000;
 pub(super) const CLOCK_MONOTONIC: u32 = 0x2000;
 
-/// What a device measures its colours by.
+/// Colour spaces of a device.
 pub(super) const SPACE_REC709: u32 = 3;
 pub(super) const SPACE_JPEG: u32 = 7;
 pub(super) const SPACE_DCI_P3: u32 = 12;
@@ -24,10 +24,10 @@ pub(super) const ENCODING_709: [u32; 2] = [2, 4];
 pub(super) const RANGE_FULL: u32 = 1;
 pub(super) const RANGE_LIMITED: u32 = 2;
 
-/// A frame size of its own, not a range of them.
+/// A single frame size, not a range.
 pub(super) const SIZE_DISCRETE: u32 = 1;
 
-/// A request: its number, which way its structure goes, and how long it is.
+/// A request: its number, the direction of its structure, and its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Request {
     pub(super) number: u8,
@@ -56,7 +56,7 @@ pub(super) const S_PARM: Request = request(22, READ | WRITE, 204);
 pub(super) const ENUM_FRAMESIZES: Request = request(74, READ | WRITE, 44);
 
 impl Request {
-    /// The number that the system call takes.
+    /// Returns the number for the system call.
     pub(super) const fn code(self) -> u32 {
         self.direction << 30 | (self.length as u32) << 16 | (b'V' as u32) << 8 | self.number as u32
     }
@@ -97,7 +97,7 @@ pub(super) mod at {
     pub(in super::super) const SIZE_MOST_HEIGHT: usize = 28;
 }
 
-/// A structure, all zero at first.
+/// A structure, initially all zero.
 #[derive(Clone, Debug)]
 pub(super) struct Block(pub(super) Vec<u8>);
 
@@ -126,7 +126,7 @@ impl Block {
         self.0.get(at..).and_then(|bytes| bytes.first_chunk()).map_or(0, |bytes| i64::from_ne_bytes(*bytes))
     }
 
-    /// Text up to its zero, fit for a message.
+    /// Text up to its terminating zero, usable in a message.
     pub(super) fn text(&self, at: usize, length: usize) -> String {
         let bytes = self.0.get(at..at + length).unwrap_or_default();
         let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());

@@ -1,4 +1,4 @@
-//! A driver that is a table of requests, told by the numbers of the kernel's header and by none of ours.
+//! A driver implemented as a table of requests, with the numbers of the kernel's header rather than ours.
 
 use std::{
     collections::VecDeque,
@@ -13,7 +13,7 @@ const MJPG: [u8; 4] = *b"MJPG";
 const YUYV: [u8; 4] = *b"YUYV";
 const NV12: [u8; 4] = *b"NV12";
 
-/// What a driver has in its buffers.
+/// Contents of a driver's buffer.
 #[derive(Clone, Debug, Default)]
 struct Filled {
     bytes: Vec<u8>,
@@ -32,9 +32,9 @@ struct Table {
     /// Requests that fail, by number, with this error.
     fails: Vec<(u8, i32)>,
     buffers: u32,
-    /// Pictures that come.
+    /// Images that arrive.
     comes: VecDeque<Filled>,
-    /// Buffers that the driver may fill, and what is in those that are filled.
+    /// Buffers that the driver may fill, and the contents of filled buffers.
     queued: VecDeque<u32>,
     filled: Vec<Vec<u8>>,
     streams: bool,
@@ -84,7 +84,7 @@ impl Kernel for Driver {
         if let Some((_, number)) = table.fails.iter().find(|(failing, _)| *failing == request.number) {
             return Err(error(*number));
         }
-        // The codes of <linux/videodev2.h> on x86-64, as its own compiler has them.
+        // The codes of <linux/videodev2.h> on x86-64, as computed by a C compiler.
         match request.code() {
             0x8068_5600 => {
                 bytes[16..22].copy_from_slice(b"Camera");
@@ -128,7 +128,7 @@ impl Kernel for Driver {
             0xc058_560f => {
                 assert_eq!([word(bytes, 4), word(bytes, 60)], [1, 1]);
                 let index = word(bytes, 0);
-                assert!(!table.queued.contains(&index), "buffer {index} was handed over twice");
+                assert!(!table.queued.contains(&index), "buffer {index} was returned twice");
                 table.queued.push_back(index);
             }
             0xc058_5611 => {
@@ -198,7 +198,7 @@ fn the_best_format_is_taken_and_the_newest_picture_wins() {
     assert!(camera.next().unwrap().is_none());
     let frame = |value: u8| jpeg::encode(&[value; 3 * 64], [8, 8], 90);
     for value in [10, 100, 200] {
-        // Filled up, as some drivers do.
+        // Padded, as by some drivers.
         comes(&driver, [frame(value), vec![0; 300]].concat(), 0x2000, Duration::from_millis(40));
     }
     let picture = camera.next().unwrap().unwrap();
@@ -206,7 +206,7 @@ fn the_best_format_is_taken_and_the_newest_picture_wins() {
     assert_eq!(picture.decode().unwrap().size_px, [8, 8]);
     let late = picture.arrived.duration_since(picture.taken.unwrap());
     assert!(late.as_millis().abs_diff(40) <= 20, "{late:?}");
-    // Every buffer is the driver's again, however often pictures come.
+    // Every buffer returns to the driver, however often images arrive.
     for value in 0..40 {
         comes(&driver, frame(value), 0, Duration::ZERO);
         let picture = camera.next().unwrap().unwrap();
@@ -270,9 +270,9 @@ fn what_is_marked_as_damaged_is_passed_over() {
 fn each_cause_is_told_with_its_cure() {
     let failing = |number, error| Table { fails: vec![(number, error)], ..Table::default() };
     for (table, wanted, told, cure) in [
-        (failing(0, libc::ENOTTY), "", "is no camera", "nima devices"),
-        (failing(0, libc::EINVAL), "", "is no camera", "nima devices"),
-        (Table { capabilities: 0x0400_0002, ..Table::default() }, "", "is no camera", "nima devices"),
+        (failing(0, libc::ENOTTY), "", "is not a camera", "nima devices"),
+        (failing(0, libc::EINVAL), "", "is not a camera", "nima devices"),
+        (Table { capabilities: 0x0400_0002, ..Table::default() }, "", "is not a camera", "nima devices"),
         (
             Table { capabilities: 0x0400_1000, ..Table::default() },
             "",
@@ -288,12 +288,12 @@ fn each_cause_is_told_with_its_cure() {
             "no MJPG, NV12 or YUYV, but RGB3, H264",
             "format",
         ),
-        (Table::default(), "format=nv12", "gives no NV12, but YUYV, MJPG", "format"),
+        (Table::default(), "format=nv12", "does not offer NV12, only YUYV, MJPG", "format"),
         (Table { formats: Vec::new(), ..Table::default() }, "", "but nothing", "format"),
         (Table::default(), "size=800x600", "no pictures of 800x600, but 640x480, 1280x720", "size"),
         (Table { sizes: vec![[9000, 9000]], ..Table::default() }, "", "too many", "dmesg"),
         (Table { buffers: 1, ..Table::default() }, "", "gives 1 buffers", "dmesg"),
-        (failing(18, libc::ENOSPC), "", "no room on its USB", "port of its own"),
+        (failing(18, libc::ENOSPC), "", "lacks bandwidth on its USB", "its own USB port"),
         (failing(18, libc::EIO), "", "beginning to stream failed", "dmesg"),
     ] {
         let (_, started) = start(table, wanted);
@@ -303,9 +303,9 @@ fn each_cause_is_told_with_its_cure() {
         assert!(trouble.cure().contains(cure), "{words}: {}", trouble.cure());
     }
     for (number, told) in [
-        (libc::ENOENT, "/dev/video0 is not there"),
-        (libc::ENODEV, "/dev/video0 is not there"),
-        (libc::EACCES, "this user may not use /dev/video0"),
+        (libc::ENOENT, "/dev/video0 does not exist"),
+        (libc::ENODEV, "/dev/video0 does not exist"),
+        (libc::EACCES, "this user has no permission to use /dev/video0"),
         (libc::EBUSY, "in use"),
     ] {
         let trouble = super::told("/dev/video0", &error(number), "opening it");
@@ -318,7 +318,7 @@ fn what_is_pulled_while_it_streams_and_what_stays_silent_is_told() {
     let (driver, started) = start(Table::default(), "");
     let mut camera = started.unwrap();
     camera.heard -= SILENT;
-    assert_eq!(camera.next().unwrap_err().to_string(), "/dev/video0 is open but gives no picture");
+    assert_eq!(camera.next().unwrap_err().to_string(), "/dev/video0 is open but sends no images");
     driver.0.lock().unwrap().fails.push((17, libc::ENODEV));
     assert_eq!(camera.next().unwrap_err().to_string(), "/dev/video0 was unplugged");
     driver.0.lock().unwrap().fails[0].1 = libc::EIO;
@@ -328,11 +328,11 @@ fn what_is_pulled_while_it_streams_and_what_stays_silent_is_told() {
 #[test]
 fn files_that_are_no_cameras_are_told_by_the_real_calls() {
     let told = |path: &str| open(Path::new(path), Capture::default()).err().unwrap().to_string();
-    assert_eq!(told("/dev/video987654"), "/dev/video987654 is not there");
-    assert_eq!(told("/dev/null"), "/dev/null is no camera");
+    assert_eq!(told("/dev/video987654"), "/dev/video987654 does not exist");
+    assert_eq!(told("/dev/null"), "/dev/null is not a camera");
 }
 
-/// Any answers of a driver, and any bytes: a picture, a damage or a trouble.
+/// Any responses of a driver with any bytes give an image, a damage or a trouble.
 fn any_driver(seed: u64, count: usize) {
     let mut random = fastrand::Rng::with_seed(seed);
     for _ in 0..count {

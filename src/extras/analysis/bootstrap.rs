@@ -1,17 +1,18 @@
-//! Intervals of confidence by drawing samples from the sample (Efron & Tibshirani, An Introduction to the Bootstrap, 1993).
+//! Bootstrap confidence intervals (Efron & Tibshirani, An Introduction to the Bootstrap, 1993).
 
 use crate::distribution::{normal_below, normal_quantile};
 use crate::error::{AnalysisError, Result};
 use crate::interval::Interval;
 use crate::{check, summary};
 
-/// How the interval is read from the bootstrap distribution.
+/// How the interval is computed from the bootstrap distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Between its quantiles (Efron & Tibshirani, section 13.3). With few values it is too short.
+    /// Between its quantiles (Efron & Tibshirani, section 13.3). Too short with few values.
     Percentile,
-    /// `BCa`: corrected for bias and acceleration (Efron, Better bootstrap confidence intervals, JASA 82, 1987; Efron & Tibshirani, section 14.3).
-    /// Where drawn samples give the very estimate, as medians often do, half of them count as below it.
+    /// `BCa`: corrected for bias and acceleration (Efron, Better bootstrap confidence intervals, JASA 82, 1987; Efron &
+    /// Tibshirani, section 14.3). If resamples equal the estimate exactly, as medians often do, half of them count as
+    /// below it.
     #[default]
     BiasCorrected,
 }
@@ -28,13 +29,11 @@ pub enum Method {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bootstrap {
-    /// Number of samples that are drawn, 100 to a million.
+    /// Number of resamples, 100 to a million.
     pub resamples: usize,
-    /// Seed of the draws.
     pub seed: u64,
-    /// Confidence of the interval, between 0 and 1.
+    /// Confidence level of the interval, between 0 and 1.
     pub confidence: f64,
-    /// How it is read.
     pub method: Method,
 }
 
@@ -45,22 +44,23 @@ impl Default for Bootstrap {
 }
 
 impl Bootstrap {
-    /// Of the mean of at least two values.
+    /// Returns the interval of the mean of at least two values.
     pub fn mean(&self, sample: &[f64]) -> Result<Interval> {
         self.interval(sample, summary::raw_mean)
     }
 
-    /// Of the median of at least two values.
+    /// Returns the interval of the median of at least two values.
     pub fn median(&self, sample: &[f64]) -> Result<Interval> {
         self.interval(sample, median)
     }
 
-    /// Of the median of `first - second`, pair by pair; pairs are drawn whole.
+    /// Returns the interval of the median of `first - second`, pair by pair; pairs are resampled as a whole.
     pub fn paired_median(&self, first: &[f64], second: &[f64]) -> Result<Interval> {
         self.median(&check::differences(first, second)?)
     }
 
-    /// Of any statistic of at least two values, which must be finite for every sample that can be drawn: also for one value that is drawn n times.
+    /// Returns the interval of any statistic of at least two values. The statistic must be finite for every possible
+    /// resample, including one value repeated n times.
     pub fn interval(&self, sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<Interval> {
         check::values("the sample", sample, 2)?;
         check::share("the confidence", self.confidence)?;
@@ -76,7 +76,7 @@ impl Bootstrap {
         Ok(Interval { lower: at(lower), upper: at(upper), confidence: self.confidence })
     }
 
-    /// The statistic of each drawn sample, ascending.
+    /// Returns the statistic of each resample, ascending.
     fn draw(&self, sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<Vec<f64>> {
         let mut rng = fastrand::Rng::with_seed(self.seed);
         let mut resample = vec![0.0; sample.len()];
@@ -91,10 +91,10 @@ impl Bootstrap {
     }
 }
 
-/// The shares of the bootstrap distribution that `BCa` takes instead of `tail` and `1 - tail`.
+/// Returns the quantiles of the bootstrap distribution that `BCa` uses instead of `tail` and `1 - tail`.
 fn corrected(tail: f64, drawn: &[f64], sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<[f64; 2]> {
     let estimate = statistic(sample);
-    // The same values in another order may give a mean that is rounded otherwise: still the very estimate.
+    // The same values in another order may give a differently rounded mean, which still equals the estimate.
     let rounding = 1e-12 * (drawn[drawn.len() - 1] - drawn[0]);
     let below = drawn.partition_point(|value| *value < estimate - rounding);
     let not_above = drawn.partition_point(|value| *value <= estimate + rounding);
@@ -110,7 +110,8 @@ fn corrected(tail: f64, drawn: &[f64], sample: &[f64], statistic: impl Fn(&[f64]
     Ok([share(z), share(-z)])
 }
 
-/// From the jackknife: skewness of the statistic with one value left out. None of it where the statistic does not notice what is left out.
+/// From the jackknife: skewness of the statistic with one value left out; zero if the statistic does not depend on the
+/// omitted value.
 fn acceleration(sample: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Result<f64> {
     let mut rest = sample[1..].to_vec();
     let mut without = Vec::with_capacity(sample.len());

@@ -1,11 +1,11 @@
-//! Refusing what cannot be analysed, before anything is computed.
+//! Refuses input that cannot be analysed, before anything is computed.
 
 use crate::error::{AnalysisError, Result};
 
 /// Larger numbers are refused: their squares, summed, would not be finite.
 const LARGEST: f64 = 1e150;
 
-/// All of `values` are finite, and there are at least `needed`.
+/// Checks that all of `values` are finite, and that there are at least `needed`.
 pub(crate) fn values(what: &'static str, values: &[f64], needed: usize) -> Result<()> {
     enough(what, values.len(), needed)?;
     finite(what, values)
@@ -34,12 +34,12 @@ pub(crate) fn as_many(what: &str, found: usize, with: &'static str, expected: us
     }
 }
 
-/// Not all of `values` are the same.
+/// Whether the values differ.
 pub(crate) fn varies(values: &[f64]) -> bool {
     values.windows(2).any(|two| (two[0] - two[1]).abs() > 0.0)
 }
 
-/// A share strictly between 0 and 1, such as a confidence or a level.
+/// Checks for a value strictly between 0 and 1, such as a confidence level.
 pub(crate) fn share(what: &'static str, value: f64) -> Result<()> {
     // Written so that NaN is refused too.
     if value > 0.0 && value < 1.0 {
@@ -49,7 +49,7 @@ pub(crate) fn share(what: &'static str, value: f64) -> Result<()> {
     }
 }
 
-/// A positive number of usable size.
+/// Checks for a positive number of usable size.
 pub(crate) fn positive(what: &'static str, value: f64) -> Result<()> {
     if value > 0.0 && usable(value) {
         Ok(())
@@ -58,7 +58,7 @@ pub(crate) fn positive(what: &'static str, value: f64) -> Result<()> {
     }
 }
 
-/// `first - second`, pair by pair.
+/// Returns `first - second`, pair by pair.
 pub(crate) fn differences(first: &[f64], second: &[f64]) -> Result<Vec<f64>> {
     as_many("the second values", second.len(), "the first ones", first.len())?;
     finite("the first values", first)?;

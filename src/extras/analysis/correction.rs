@@ -3,8 +3,9 @@
 use crate::check;
 use crate::error::{AnalysisError, Result};
 
-/// Holm's step-down p-values (A simple sequentially rejective multiple test procedure, Scandinavian Journal of Statistics 6, 1979), in the order
-/// of `p_values`; R's `p.adjust(p, "holm")`. Never less powerful than [`bonferroni`], and as general.
+/// Holm's step-down p-values (A simple sequentially rejective multiple test procedure, Scandinavian Journal of
+/// Statistics 6, 1979), in the order of `p_values`; R's `p.adjust(p, "holm")`. Never less powerful than [`bonferroni`],
+/// and as general.
 ///
 /// ```
 /// use nima_analysis::{correction, AnalysisError};

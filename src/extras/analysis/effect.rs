@@ -1,4 +1,5 @@
-//! Effect sizes: how large a difference is, without a unit. For an interval hand one of them to [`crate::Bootstrap::interval`].
+//! Effect sizes: the size of a difference, without a unit. For an interval pass one of them to
+//! [`crate::Bootstrap::interval`].
 
 use crate::error::{AnalysisError, Result};
 use crate::signed_rank::{Zeros, signed_ranks};
@@ -11,13 +12,14 @@ use statrs::function::gamma::ln_gamma;
 pub struct Standardised {
     /// Cohen's d (Statistical Power Analysis, 1988).
     pub d: f64,
-    /// The same without its bias in small samples: d times the exact factor of Hedges (Distribution theory for Glass's estimator of effect size,
-    /// Journal of Educational Statistics 6, 1981).
+    /// The same without its bias in small samples: d times the exact factor of Hedges (Distribution theory for Glass's
+    /// estimator of effect size, Journal of Educational Statistics 6, 1981).
     pub g: f64,
 }
 
-/// Matched-pairs rank-biserial correlation, -1 (all differences negative) to 1: the share of the ranks that are positive minus the share that are
-/// negative (Kerby, The simple difference formula, Comprehensive Psychology 3, 2014). Zeros are dropped; one difference at least is not zero.
+/// Matched-pairs rank-biserial correlation, -1 (all differences negative) to 1: the positive fraction of the rank sum
+/// minus the negative fraction (Kerby, The simple difference formula, Comprehensive Psychology 3, 2014). Zeros are
+/// dropped; at least one difference must not be zero.
 pub fn rank_biserial(differences: &[f64]) -> Result<f64> {
     check::values("differences", differences, 1)?;
     let (ranks, positive) = signed_ranks(differences, Zeros::Wilcoxon);
@@ -29,8 +31,8 @@ pub fn rank_biserial(differences: &[f64]) -> Result<f64> {
     Ok(signed.sum::<f64>() / ranks.iter().sum::<usize>() as f64)
 }
 
-/// Cohen's d of paired values, `dz`: mean of the differences over their standard deviation; of at least three, not all the same. `g` has n - 1
-/// degrees of freedom.
+/// Cohen's d of paired values, `dz`: mean of the differences over their standard deviation; of at least three
+/// differences that are not all equal. `g` has n - 1 degrees of freedom.
 pub fn cohens_dz(differences: &[f64]) -> Result<Standardised> {
     check::values("differences", differences, 3)?;
     let sd = if check::varies(differences) { summary::raw_sd(differences) } else { 0.0 };
@@ -48,14 +50,15 @@ pub fn cohens_d(first: &[f64], second: &[f64]) -> Result<Standardised> {
     standardised(summary::raw_mean(first) - summary::raw_mean(second), pooled, df, "the values of each group")
 }
 
-/// Vargha & Delaney's A (A critique and improvement of the CL common language effect size statistics, Journal of Educational and Behavioral Statistics
-/// 25, 2000): probability that a value of the first group is greater than one of the second, ties counting half; 0 to 1, 0.5 is no effect.
+/// Vargha & Delaney's A (A critique and improvement of the CL common language effect size statistics, Journal of
+/// Educational and Behavioral Statistics 25, 2000): probability that a value of the first group is greater than a value
+/// of the second, ties counting half; 0 to 1, 0.5 is no effect.
 pub fn vargha_delaney(first: &[f64], second: &[f64]) -> Result<f64> {
     Ok(f64::midpoint(cliffs_delta(first, second)?, 1.0))
 }
 
-/// Cliff's delta (Dominance statistics, Psychological Bulletin 114, 1993): share of pairs in which the first is greater minus share in which the
-/// second is; -1 to 1.
+/// Cliff's delta (Dominance statistics, Psychological Bulletin 114, 1993): fraction of pairs in which the first is
+/// greater minus fraction in which the second is; -1 to 1.
 pub fn cliffs_delta(first: &[f64], second: &[f64]) -> Result<f64> {
     check::values("values of the first group", first, 1)?;
     check::values("values of the second group", second, 1)?;

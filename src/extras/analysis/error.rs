@@ -1,29 +1,32 @@
-//! Why a question cannot be answered.
+//! Reasons why an analysis is impossible.
 
-/// Input that cannot be used, or a question that it cannot answer; its text is one sentence for the user.
+/// Input that cannot be used, or a question that it cannot answer. The text is one sentence for the user.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
-    #[error("{what}: at least {needed} are needed, and there are {found}")]
+    #[error("{what}: {found} are too few; give at least {needed}")]
     TooFew { what: &'static str, needed: usize, found: usize },
-    #[error("{what}: at most {most} can be handled, and there are {found}")]
+    #[error("{what}: {found} are too many; give at most {most}")]
     TooMany { what: &'static str, most: usize, found: usize },
-    #[error("value {position} of {what} is not a number that can be used (finite, and smaller than 1e150)")]
+    #[error("value {position} of {what} is not a usable number (finite, and smaller than 1e150); correct it")]
     NotFinite { what: String, position: usize },
-    #[error("{what} must be as many as {with}: {found} and {expected}")]
+    #[error("{what} and {with} differ in number: {found} instead of {expected}; give the same number of both")]
     UnequalLengths { what: String, with: &'static str, found: usize, expected: usize },
     #[error("{what} must be {range}, not {value}")]
     OutOfRange { what: &'static str, range: &'static str, value: f64 },
-    #[error("{what} are all the same, so there is no variation to judge by")]
+    #[error("{what} are all the same, so there is no variation to judge by; give values that differ")]
     NoVariation { what: &'static str },
     #[error("there is no condition called '{name}'")]
     UnknownCondition { name: String },
-    #[error("the column '{column}' follows from the columns before it, so its effect cannot be told from theirs")]
+    #[error(
+        "the column '{column}' is a combination of earlier columns, so its effect cannot be separated from theirs; leave it out"
+    )]
     DependentColumn { column: String },
     #[error("the variances cannot be estimated: {why}")]
     NotEstimable { why: &'static str },
-    #[error("the power is {power:.3} with {largest} participants, the most that were allowed, and not {wanted:.3}")]
+    #[error(
+        "the power is {power:.3} with the maximum of {largest} participants, below the requested {wanted:.3}; allow more participants"
+    )]
     NotReached { wanted: f64, power: f64, largest: usize },
 }
 
-/// What every function here returns.
 pub(crate) type Result<T> = std::result::Result<T, AnalysisError>;

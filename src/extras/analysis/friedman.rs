@@ -8,27 +8,29 @@ use serde::Serialize;
 /// Result of Friedman's test, corrected for ties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Friedman {
-    /// Mean rank of each condition; rank 1 is the least value.
+    /// Mean rank of each condition; rank 1 is the smallest value.
     pub mean_ranks: Vec<f64>,
     /// Friedman's chi-square (Friedman, JASA 32, 1937; ties as in Conover, Practical Nonparametric Statistics, 1999, section 5.8).
     pub chi_square: f64,
-    /// Its degrees of freedom, conditions - 1.
+    /// Degrees of freedom of `chi_square`, conditions - 1.
     pub df: f64,
-    /// Its p-value; conservative with few participants.
+    /// p-value of `chi_square`; conservative with few participants.
     pub p: f64,
-    /// The F of Iman & Davenport (Approximations of the critical region of the Friedman statistic, Communications in Statistics A9, 1980), which is
-    /// nearer to its level; nothing where all participants agree, because it is infinite there.
+    /// The F of Iman & Davenport (Approximations of the critical region of the Friedman statistic, Communications in
+    /// Statistics A9, 1980), whose actual level is closer to the nominal one; `None` if all participants agree, because
+    /// it is infinite then.
     pub f: Option<f64>,
-    /// Degrees of freedom of its denominator, (conditions - 1)(participants - 1); that of its numerator is `df`.
+    /// Degrees of freedom of its denominator, (conditions - 1)(participants - 1); its numerator has `df`.
     pub f_df: f64,
-    /// Its p-value; where all participants agree, the probability that they do so by chance (Conover).
+    /// p-value of `f`; if all participants agree, the probability of this agreement by chance (Conover).
     pub f_p: f64,
     /// Kendall's coefficient of concordance W, 0 (none) to 1 (all participants agree), corrected for ties (Kendall & Babington Smith, Annals of
     /// Mathematical Statistics 10, 1939).
     pub w: f64,
 }
 
-/// Of one row per participant and one column per condition: at least two rows and two columns, and one row at least that is not all the same.
+/// Tests one row per participant and one column per condition: at least two rows and two columns, and at least one row
+/// whose values are not all equal.
 ///
 /// ```
 /// use nima_analysis::{friedman, AnalysisError};
@@ -58,7 +60,7 @@ pub fn test<Row: AsRef<[f64]>>(rows: &[Row]) -> Result<Friedman> {
     let n = rows.len() as f64;
     let k = conditions as f64;
     let spread = n * k * (k + 1.0) - ties / (k - 1.0);
-    // Each row that is all the same takes k (k + 1) off: nothing is left where all of them are.
+    // Each row with equal values subtracts k (k + 1): nothing remains if all rows have equal values.
     if spread < 0.5 {
         return Err(AnalysisError::NoVariation { what: "the values of every participant" });
     }

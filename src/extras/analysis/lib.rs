@@ -1,4 +1,4 @@
-//! Statistics of user studies with repeated measures: few participants, every one of them under every condition.
+//! Statistics of user studies with repeated measures: few participants, each of them under every condition.
 //!
 //! | question | answer |
 //! |---|---|
@@ -9,11 +9,11 @@
 //! | By how much? | [`effect`], and the Hodges-Lehmann estimates of the rank tests |
 //! | How many participants does the study need? | [`power`] |
 //!
-//! Everything is a function of its input: what draws numbers takes a seed. Input that cannot be used gives an [`AnalysisError`] in one sentence;
-//! no function panics, and none returns a value that is not a number.
+//! Everything is a function of its input: functions that draw random numbers take a seed. Unusable input gives an
+//! [`AnalysisError`] in one sentence; no function panics or returns NaN.
 //!
-//! Values that are equal are ties. Differences such as 0.3 - 0.1 and 0.2 are not equal in floating point, so round measurements and
-//! differences to the resolution of the instrument before a rank test.
+//! Equal values are ties. Differences such as 0.3 - 0.1 and 0.2 are not equal in floating point, so round measurements
+//! and differences to the resolution of the instrument before a rank test.
 //!
 //! ```
 //! use nima_analysis::{signed_rank::{self, Options}, AnalysisError};

@@ -9,7 +9,7 @@ pub(crate) struct Ranks {
 }
 
 impl Ranks {
-    /// Of finite values.
+    /// Ranks finite values.
     pub(crate) fn of(values: &[f64]) -> Self {
         // A negative zero equals zero.
         let compare = |&a: &usize, &b: &usize| (values[a] + 0.0).total_cmp(&(values[b] + 0.0));

@@ -1,4 +1,4 @@
-//! What was measured: location and spread of one sample.
+//! Descriptive statistics: location and spread of one sample.
 
 use crate::check;
 use crate::error::{AnalysisError, Result};
@@ -7,22 +7,19 @@ use serde::Serialize;
 /// Location and spread of one sample, all in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// Number of values.
     pub n: usize,
-    /// Arithmetic mean.
     pub mean: f64,
-    /// Standard deviation with n - 1; nothing of a single value.
+    /// Standard deviation with n - 1; `None` for a single value.
     pub sd: Option<f64>,
-    /// Median.
     pub median: f64,
     /// First and third quartile ([`quantile`]).
     pub quartiles: [f64; 2],
-    /// Least and greatest value.
+    /// Minimum and maximum.
     pub extremes: [f64; 2],
 }
 
 impl Summary {
-    /// Of `sample`, at least one value.
+    /// Summarises `sample`, at least one value.
     pub fn of(sample: &[f64]) -> Result<Self> {
         check::values("the sample", sample, 1)?;
         let sorted = sorted(sample);
@@ -38,29 +35,30 @@ impl Summary {
     }
 }
 
-/// Arithmetic mean of at least one value.
+/// Returns the mean of at least one value.
 pub fn mean(sample: &[f64]) -> Result<f64> {
     check::values("the sample", sample, 1)?;
     Ok(raw_mean(sample))
 }
 
-/// Standard deviation with n - 1 in the denominator, of at least two values.
+/// Returns the standard deviation with n - 1 in the denominator, of at least two values.
 pub fn sd(sample: &[f64]) -> Result<f64> {
     check::values("the sample", sample, 2)?;
     Ok(raw_sd(sample))
 }
 
-/// Median of at least one value.
+/// Returns the median of at least one value.
 pub fn median(sample: &[f64]) -> Result<f64> {
     quantile(sample, 0.5)
 }
 
-/// The quantile at `share` (0 to 1) of at least one value: type 7 of Hyndman & Fan (Sample quantiles in statistical packages, The American
-/// Statistician 50, 1996), linear between the order statistics, as R's `quantile` and `NumPy` take it by default.
+/// Returns the quantile at `share` (0 to 1) of at least one value: type 7 of Hyndman & Fan (Sample quantiles in
+/// statistical packages, The American Statistician 50, 1996), linear between the order statistics, the default of R's
+/// `quantile` and `NumPy`.
 pub fn quantile(sample: &[f64], share: f64) -> Result<f64> {
     check::values("the sample", sample, 1)?;
     if !(0.0..=1.0).contains(&share) {
-        return Err(AnalysisError::OutOfRange { what: "the share of a quantile", range: "from 0 to 1", value: share });
+        return Err(AnalysisError::OutOfRange { what: "the level of a quantile", range: "from 0 to 1", value: share });
     }
     Ok(quantile_of_sorted(&sorted(sample), share))
 }
@@ -71,7 +69,7 @@ pub(crate) fn sorted(sample: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// Of at least one finite value, ascending.
+/// For at least one finite value, ascending.
 pub(crate) fn quantile_of_sorted(sorted: &[f64], share: f64) -> f64 {
     let at = (sorted.len() - 1) as f64 * share;
     let below = at as usize;
@@ -84,14 +82,13 @@ pub(crate) fn median_of_sorted(sorted: &[f64]) -> f64 {
     if sorted.len() % 2 == 1 { sorted[half] } else { f64::midpoint(sorted[half - 1], sorted[half]) }
 }
 
-/// Of at least one value.
 pub(crate) fn raw_mean(sample: &[f64]) -> f64 {
     let mean = sample.iter().sum::<f64>() / sample.len() as f64;
-    // The second pass takes away what the sum was rounded by.
+    // The second pass removes the rounding error of the sum.
     mean + sample.iter().map(|value| value - mean).sum::<f64>() / sample.len() as f64
 }
 
-/// Of at least two values.
+/// For at least two values.
 pub(crate) fn raw_sd(sample: &[f64]) -> f64 {
     (squares(sample) / (sample.len() - 1) as f64).sqrt()
 }

@@ -11,22 +11,21 @@ use serde::Serialize;
 pub struct TTest {
     /// Mean difference, in the unit of the differences.
     pub mean: f64,
-    /// Its interval of confidence.
+    /// Confidence interval of `mean`.
     pub interval: Interval,
     /// Mean over its standard error.
     pub t: f64,
-    /// Degrees of freedom, n - 1.
+    /// n - 1.
     pub df: f64,
-    /// Two-sided p-value.
     pub p: f64,
 }
 
-/// Of `first - second`, pair by pair.
+/// Tests `first - second`, pair by pair.
 pub fn paired(first: &[f64], second: &[f64], confidence: f64) -> Result<TTest> {
     of_differences(&check::differences(first, second)?, confidence)
 }
 
-/// Of at least two differences that are not all the same, against zero.
+/// Tests at least two differences that are not all equal against zero.
 pub fn of_differences(differences: &[f64], confidence: f64) -> Result<TTest> {
     check::values("differences", differences, 2)?;
     check::share("the confidence", confidence)?;

@@ -1,6 +1,7 @@
-//! `OpenIGTLink`, versions 1 to 3: the codec, and a server that tells clients what a loop does.
+//! `OpenIGTLink`, versions 1 to 3: the codec, and a server that reports the state of a loop to clients.
 //!
-//! The codec knows no socket, thread or clock. It reads what anybody may send: every sequence of bytes gives a message or an error.
+//! The codec uses no socket, thread or clock. It accepts untrusted input: every sequence of bytes gives a message or an
+//! error.
 //!
 //! ```
 //! use nima_bridges::igtl::{Content, Header, Matrix, Message};
@@ -31,32 +32,25 @@ pub use server::{IMAGE_DEVICE, IgtlError, Outline, PORT, Pictures, Server, State
 pub use tracking::{Matrix, Tool, ToolKind, Turned};
 pub use unit::Unit;
 
-/// Why bytes are no message.
+/// Why bytes are not a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Wrong {
     /// Fewer bytes than the message needs.
     #[error("the message ends early")]
     Short,
-    /// An unknown version of the header.
-    #[error("the header's version is {0}; 1 and 2 are known")]
+    #[error("the header's version is {0}, but only 1 and 2 are supported; use another version of the sender")]
     Version(u16),
-    /// The checksum does not fit the body.
-    #[error("the checksum does not fit: the message was damaged on its way")]
+    /// The checksum does not match the body.
+    #[error("the checksum does not match: the message was damaged in transit")]
     Checksum,
-    /// The body's length does not fit what it says of itself.
-    #[error("a message {kind} of {bytes} bytes does not fit its own counts")]
-    Length {
-        /// The kind.
-        kind: String,
-        /// Bytes of the content.
-        bytes: usize,
-    },
-    /// A number that has no meaning.
-    #[error("a message {kind} has a value that means nothing: {what}")]
+    /// The body's length does not match its own counts.
+    #[error("a message {kind} of {bytes} bytes does not match its own counts")]
+    Length { kind: String, bytes: usize },
+    /// A number without a meaning.
+    #[error("a message {kind} has an undefined value: {what}")]
     Value {
-        /// The kind.
         kind: String,
-        /// Which.
+        /// Name of the value.
         what: &'static str,
     },
 }

@@ -1,13 +1,14 @@
-//! Bridges: what a loop does, told to the programs that laboratories use, while it happens. They only tell; nothing that they hear reaches the loop.
+//! Bridges: report the state of a loop to other laboratory programs while it runs. They only send; received data never
+//! reach the loop.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`igtl`] | `OpenIGTLink` (3D Slicer, PLUS, pyigtl): codec and server |
-//! | `lsl` | Lab Streaming Layer: marks of what happened |
+//! | `lsl` | Lab Streaming Layer: event markers |
 //!
-//! A bridge is an `Audience` of the session's recorder, as the live viewers are. On the recorder's thread it only
-//! copies what is due into a bounded queue and never waits; threads of its own do the rest. What each of them sends, under which names and
-//! in which units, is in `docs/bridges.md`.
+//! A bridge is an `Audience` of the session's recorder, like the live viewers. On the recorder's thread it only copies
+//! due data into a bounded queue and never waits; its own threads do the rest. The data, names and units of each bridge
+//! are in `docs/bridges.md`.
 
 pub mod igtl;
 #[cfg(feature = "loop")]

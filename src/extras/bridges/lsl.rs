@@ -1,7 +1,7 @@
-//! Marks for recordings of other instruments, over the Lab Streaming Layer (LSL): what happened, when, by the clock of LSL.
+//! Markers for recordings of other instruments, over the Lab Streaming Layer (LSL): events with LSL time stamps.
 //!
-//! Its library is loaded while the program runs, where somebody asks for it. Marks tell what happened, never under which mode, gain or delay, so
-//! that they can be taken in a blind study.
+//! The library is loaded at run time, only when requested. Markers contain events, never the mode, gain or delay, so
+//! that they can be used in a blind study.
 
 mod audience;
 mod clock;
@@ -29,60 +29,51 @@ use self::{
     library::{Info, Lsl},
 };
 
-/// Name and kind of the stream.
+/// Name of the stream.
 pub const STREAM: &str = "NIMA";
-/// See [`STREAM`].
+/// Type of the stream.
 pub const STREAM_TYPE: &str = "Markers";
-/// Force at the tip from which on it is in contact, N, where a task does not say it.
+/// Force at the tip above which it is in contact, N, if the task does not set it.
 pub const CONTACT_N: f64 = 0.2;
 
-/// Marks that wait for the library, at most.
+/// Maximum number of markers that wait for the library.
 const QUEUE: usize = 1024;
-/// How often is looked whether somebody listens.
+/// Interval between checks for a listener.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
-/// Why there are no marks.
+/// Why there are no markers.
 #[derive(Debug, thiserror::Error)]
 pub enum LslError {
-    /// The library is nowhere.
+    /// The library was not found.
     #[error(
-        "Lab Streaming Layer: liblsl is not installed (searched: {searched}); install it from \
-         https://github.com/sccn/liblsl/releases or with `pip install pylsl`, and name its file: --lsl FILE"
+        "Lab Streaming Layer: liblsl not found (searched: {searched}); install it from https://github.com/sccn/liblsl/releases or with `pip install pylsl`, and name its file: --lsl FILE"
     )]
     Missing {
-        /// Where it was looked for.
+        /// The searched locations.
         searched: String,
     },
-    /// It cannot be used.
+    /// The library cannot be used.
     #[error(
         "Lab Streaming Layer: {path} cannot be used: {reason}; name another file of liblsl 1.13 or newer: --lsl FILE"
     )]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// It offers no stream.
-    #[error("Lab Streaming Layer: it cannot offer a stream: {reason}; check the network and the file lsl_api.cfg")]
-    Stream {
-        /// Why.
-        reason: String,
-    },
+    Unusable { path: PathBuf, reason: String },
+    /// The library cannot create a stream.
+    #[error("Lab Streaming Layer: cannot create a stream: {reason}; check the network and the file lsl_api.cfg")]
+    Stream { reason: String },
 }
 
-/// What a session's marks need to know of it.
+/// Information about a session that its markers need.
 #[derive(Clone, Debug)]
 pub struct About {
-    /// Force at the tip from which on it is in contact, N.
+    /// Force at the tip above which it is in contact, N.
     pub contact_n: f64,
-    /// What is marked at its begin and its end: `trial P03 4`; nothing for a session that is no trial.
+    /// Text of the markers at its begin and its end: `trial P03 4`; `None` for a session that is not a trial.
     pub trial: Option<String>,
-    /// A sentence for a fault.
+    /// Returns a sentence for a fault.
     pub words: fn(nima_machine::messages::Fault) -> &'static str,
 }
 
-/// A stream of marks, until it is dropped.
+/// A stream of markers, until it is dropped.
 pub struct Marker {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
@@ -97,7 +88,7 @@ struct Shared {
     ends: AtomicBool,
 }
 
-/// What happened, by the clock of LSL (s).
+/// An event with its LSL time, s.
 #[derive(Clone, Debug, PartialEq)]
 struct Mark {
     at_s: f64,
@@ -113,11 +104,11 @@ impl Shared {
 }
 
 impl Marker {
-    /// Offers the stream to this network. The library is this file, or without one that of the system; `program` and `machine` describe where the
-    /// marks come from.
+    /// Creates the stream in this network. The library is this file, or by default the system's; `program` and
+    /// `machine` describe the source of the markers.
     ///
     /// # Errors
-    /// [`LslError`] if there is no library, or it offers no stream.
+    /// [`LslError`] if there is no library, or it cannot create a stream.
     pub fn start(library: Option<&Path>, program: &str, machine: &str) -> Result<Self, LslError> {
         let lsl = Lsl::open(library)?;
         let (marks, comes) = bounded(QUEUE);
@@ -130,7 +121,7 @@ impl Marker {
             source: &format!("nima-{machine}"),
             about: &[("manufacturer", program), ("clock", "ticks of the loop, mapped onto lsl_local_clock")],
         };
-        // The stream is there when this returns; it is used by its own thread alone.
+        // The stream exists when this returns; only its own thread uses it.
         let stream = lsl.stream(&info)?;
         let told = Arc::clone(&shared);
         let run = move || push(&stream, &comes, &told);
@@ -139,23 +130,23 @@ impl Marker {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// Whether somebody listens.
+    /// Whether a listener is connected.
     pub fn is_heard(&self) -> bool {
         self.shared.heard.load(Ordering::Relaxed)
     }
 
-    /// Marks that found no room.
+    /// Number of dropped markers.
     pub fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 
-    /// For the recorder of the next session.
+    /// Returns the audience for the recorder of the next session.
     pub fn audience(&self, about: About) -> Box<dyn Audience> {
         Box::new(Marking::new(Arc::clone(&self.shared), about))
     }
 }
 
-/// Hands marks to the library until the stream ends.
+/// Passes markers to the library until the stream ends.
 fn push(stream: &library::Stream, comes: &Receiver<Mark>, shared: &Shared) {
     loop {
         match comes.recv_timeout(LOOK_EVERY) {

@@ -1,4 +1,4 @@
-//! Finds a lens from views of a board.
+//! Computes a lens from views of a board.
 
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
 use nima_endoscope::{Bend, Board, Lens};
@@ -12,39 +12,38 @@ use crate::{
     report::Found,
 };
 
-/// A view of the board.
 pub type View = Sight;
 
-/// Fewest views that can be used.
+/// Minimum number of usable views.
 pub(crate) const VIEWS: usize = 8;
-/// Blur up to which a view is sharp, in widths of the picture: 3.2 px of 1280.
+/// Maximum blur of a sharp view, in widths of the image: 3.2 px of 1280.
 const BLUR: f64 = 0.0025;
-/// A board that has moved less on average is at the same place, in widths of the picture.
+/// Mean motion below which a board counts as being in the same place, in widths of the image.
 const SAME: f64 = 0.006;
-/// Least angle between the boards of two views, and least spread of the tilt in any direction, degrees.
+/// Minimum angle between the boards of two views, and minimum spread of the tilt in any direction, degrees.
 const TILT_DEG: f64 = 25.0;
 const SPREAD_DEG: f64 = 6.0;
-/// Least share of the picture with corners.
+/// Minimum fraction of the image with corners.
 const COVERAGE: f64 = 0.6;
-/// Largest error on held-out views, in widths of the picture: 0.64 px of 1280.
+/// Maximum error on held-out views, in widths of the image: 0.64 px of 1280.
 const HELD_OUT: f64 = 0.0005;
-/// Largest standard deviation of the focal length, of itself, and of the centre, in widths of the picture.
+/// Maximum standard deviation of the focal length, relative to it, and of the centre, in widths of the image.
 const FOCAL_SHARE: f64 = 0.002;
 const CENTRE: f64 = 0.002;
-/// A view whose error is so many times the median is an outlier, from this error on, px.
+/// A view whose error exceeds this multiple of the median is an outlier if it also exceeds this error, px.
 const OUTLIER: f64 = 3.0;
 const OUTLIER_PX: f64 = 0.4;
-/// First focal lengths, in widths of the picture, and distortions.
+/// Initial focal lengths, in widths of the image, and distortions.
 const FOCALS: [f64; 5] = [0.5, 0.75, 1.1, 1.6, 2.4];
 const BENDS: [f64; 3] = [-0.3, 0.0, 0.3];
-/// Views and steps of a first look, and steps of a whole fit.
+/// Number of views and steps of a first try, and steps of a whole fit.
 const FIRST_VIEWS: usize = 8;
 const FIRST_STEPS: usize = 12;
 const STEPS: usize = 60;
-/// A term pays if it makes the error on held-out views smaller by this share.
+/// A term is kept if it reduces the error on held-out views by this fraction.
 const PAYS: f64 = 0.01;
 
-/// Whether a view is too blurred for a picture of this width, px.
+/// Whether a view is too blurred for an image of this width, px.
 pub(crate) fn is_blurred(blur_px: f64, width_px: usize) -> bool {
     let is_sharp = blur_px <= BLUR * width_px as f64;
     !is_sharp
@@ -55,7 +54,8 @@ pub(crate) fn is_same_place(one: &Sight, other: &Sight, width_px: usize) -> bool
     one.mean_move_px(other) < SAME * width_px as f64
 }
 
-/// The lens that has seen these views of a board, and whether it may be used. Bad sets of views are refused with their cause.
+/// Returns the lens that fits these views of a board, and whether it may be used. Unsuitable sets of views are refused
+/// with their cause.
 pub fn calibrate(board: &Board, size_px: [usize; 2], views: &[View]) -> Report {
     let (mut used, mut left_out) = sorted_out(board, size_px, views);
     let cause = too_few(&used, &left_out, views.len());
@@ -96,7 +96,7 @@ pub(crate) fn of_view(board: &Board, view: &View) -> Corners {
     Corners { places_m: board.places_m(), seen_px: view.corners_px.clone() }
 }
 
-/// Views that can be used, and those that cannot.
+/// Separates the usable views from the others.
 fn sorted_out(board: &Board, [width, _]: [usize; 2], views: &[View]) -> (Vec<usize>, Vec<(usize, LeftOut)>) {
     let mut used = Vec::new();
     let mut left_out = Vec::new();
@@ -129,7 +129,8 @@ fn too_few(used: &[usize], left_out: &[(usize, LeftOut)], of: usize) -> Option<C
     })
 }
 
-/// A first lens: of several focal lengths and distortions the one that explains some views best after a few steps.
+/// Returns an initial lens: the focal length and distortion, out of several, that fit some views best after a few
+/// steps.
 fn first(size_px: [usize; 2], corners: &[Corners]) -> Option<Fit> {
     let width = size_px[0] as f64;
     let step = corners.len().div_ceil(FIRST_VIEWS).max(1);
@@ -156,7 +157,7 @@ fn is_possible(lens: &Lens) -> bool {
     (0.1 * width..20.0 * width).contains(&lens.focal_px.x)
 }
 
-/// With the pose of each view.
+/// Adds the pose of each view.
 fn posed(lens: Lens, corners: &[Corners]) -> Option<Fit> {
     let poses = corners.iter().map(|view| plane::pose(&lens, &view.places_m, &view.seen_px));
     Some(Fit { lens, poses: poses.collect::<Option<_>>()? })
@@ -171,7 +172,7 @@ fn outliers(fit: &Fit, corners: &[Corners]) -> Vec<usize> {
     (0..errors.len()).filter(|at| errors[*at] > limit_px).collect()
 }
 
-/// The lens with the terms that pay, and the directions of the boards.
+/// Returns the lens with the terms that improve it, and the directions of the boards.
 fn chosen(base: &Fit, corners: &[Corners]) -> Option<(Found, Vec<Vector3<f64>>)> {
     let mut terms = Terms::default();
     let mut best: (HeldOut, Fit) = (held_out(base, corners, terms)?, base.clone());
@@ -225,7 +226,7 @@ fn least_spread_deg(normals: &[Vector3<f64>]) -> f64 {
     SymmetricEigen::new(square).eigenvalues.min().max(0.0).sqrt().to_degrees()
 }
 
-/// What is missing, the first cause first.
+/// Returns the first deficiency of the calibration, if there is one.
 fn judged(found: &Found, normals: &[Vector3<f64>], share: f64) -> Option<Cause> {
     let width = found.lens.size_px[0] as f64;
     let spread_deg = least_spread_deg(normals);

@@ -1,27 +1,28 @@
-//! Which parts of the picture have shown corners of a board.
+//! The parts of the image in which corners of a board have been seen.
 
 use nalgebra::Vector2;
 
 use crate::Grey;
 
-/// Columns and rows of cells into which the picture is divided.
+/// Columns and rows of cells into which the image is divided.
 pub const CELLS: [usize; 2] = [6, 4];
 const COUNT: usize = CELLS[0] * CELLS[1];
-/// A pixel is lit from this brightness on, of 255, and a cell where half of its pixels are: an endoscope leaves the corners of the picture black.
+/// A pixel is lit from this brightness on, of 255, and a cell if half of its pixels are: an endoscope leaves the
+/// corners of the image black.
 const LIT: f32 = 20.0;
-/// Every so many pixels one is looked at.
+/// One pixel of this many is checked.
 const STEP: usize = 7;
 
-/// Cells of the picture, row by row.
+/// Cells of the image, row by row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// Corners in each cell.
+    /// Number of corners in each cell.
     pub corners: [u32; COUNT],
-    /// The cell has light.
+    /// Whether the cell is lit.
     pub lit: [bool; COUNT],
 }
 
-/// A ninth of the picture: column and row, 0 to 2 each.
+/// A ninth of the image: column and row, 0 to 2 each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region(pub [usize; 2]);
 
@@ -33,7 +34,7 @@ fn cell(place_px: &Vector2<f64>, size_px: [usize; 2]) -> Option<usize> {
 }
 
 impl Coverage {
-    /// Of one picture.
+    /// Returns the coverage of one image.
     pub fn of(picture: &Grey, corners_px: &[Vector2<f64>]) -> Self {
         let size_px @ [_, height] = picture.size_px();
         let mut lit = [0_u32; COUNT];
@@ -53,7 +54,7 @@ impl Coverage {
         Self { corners, lit: std::array::from_fn(|at| 2 * lit[at] > seen[at]) }
     }
 
-    /// With what another picture shows.
+    /// Adds the coverage of another image.
     pub fn add(&mut self, other: &Self) {
         for at in 0..COUNT {
             self.corners[at] += other.corners[at];
@@ -61,19 +62,19 @@ impl Coverage {
         }
     }
 
-    /// Share of the cells with light in which corners were.
+    /// Fraction of the lit cells that have contained corners.
     pub fn share(&self) -> f64 {
         let lit = (0..COUNT).filter(|at| self.is_wanted(*at)).count();
         let seen = self.corners.iter().filter(|count| **count > 0).count();
         if lit == 0 { 0.0 } else { seen as f64 / lit as f64 }
     }
 
-    /// It has light, or a corner was seen there.
+    /// Whether it is lit, or a corner was seen there.
     const fn is_wanted(&self, at: usize) -> bool {
         self.lit[at] || self.corners[at] > 0
     }
 
-    /// The ninth of the picture that has the most cells without a corner; `None` if each cell has one.
+    /// Returns the ninth of the image with the most cells without a corner; `None` if each cell has one.
     pub fn emptiest(&self) -> Option<Region> {
         let empty = |Region([column, row]): Region| {
             let inside = |at: &usize| {

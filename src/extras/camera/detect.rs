@@ -1,4 +1,4 @@
-//! Finds a board in a picture.
+//! Finds a board in an image.
 
 use nalgebra::Vector2;
 use nima_endoscope::Board;
@@ -10,41 +10,41 @@ use crate::{
     saddle::{Saddle, saddles},
 };
 
-/// The picture is also looked at half and a quarter as large: what is blurred is sharp there.
+/// The image is also searched at half and a quarter of its size, where a blurred board is sharp.
 const SCALES: usize = 3;
-/// Smoothing before saddles are looked for, and before corners are placed, px.
+/// Smoothing before the search for saddles, and before locating corners, px.
 const SADDLES_PX: f32 = 1.5;
 const CORNERS_PX: f32 = 0.8;
-/// A corner is this near to where it was first seen, in distances to the next one.
+/// Maximum distance between a corner and its first detection, relative to the distance to the next corner.
 const NEAR: f64 = 0.3;
 
-/// A board that is seen whole.
+/// A completely visible board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sight {
     /// Its inner corners in the order of the board, px.
     pub corners_px: Vec<Vector2<f64>>,
-    /// Standard deviation of the blur at its edges, px; of motion too.
+    /// Standard deviation of the blur at its edges, px; includes motion blur.
     pub blur_px: f64,
-    /// The picture's cells in which corners are, and those that have light.
+    /// The image's cells that contain corners, and its lit cells.
     pub coverage: Coverage,
 }
 
 impl Sight {
-    /// How far the corners are from those of another sight on average, px.
+    /// Mean distance of the corners from those of another sight, px.
     pub fn mean_move_px(&self, other: &Self) -> f64 {
         let moves = self.corners_px.iter().zip(&other.corners_px).map(|(a, b)| (a - b).norm());
         moves.sum::<f64>() / self.corners_px.len().max(1) as f64
     }
 }
 
-/// Why no board is found.
+/// Why no board was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// Nothing like it is in the picture.
+    /// The image contains nothing like a board.
     Nothing,
-    /// Only a part of it is seen.
+    /// Only a part of it is visible.
     Part {
-        /// Inner corners that are seen.
+        /// Visible inner corners.
         seen: usize,
         /// Inner corners of the board.
         of: usize,
@@ -53,10 +53,10 @@ pub enum Unseen {
     Other([usize; 2]),
 }
 
-/// The board in a picture, whole.
+/// Finds a completely visible board in an image.
 ///
 /// # Errors
-/// [`Unseen`].
+/// [`Unseen`] if no such board is found.
 pub fn find(picture: &Grey, board: &Board) -> Result<Sight, Unseen> {
     let mut unseen = Unseen::Nothing;
     let mut level = Some(picture.clone());
@@ -87,7 +87,7 @@ fn weight(unseen: &Unseen) -> usize {
     }
 }
 
-/// The corners of the board to a pixel or two.
+/// Locates the corners of the board to within a pixel or two.
 fn coarse(grey: &Grey, board: &Board) -> Result<Vec<Vector2<f64>>, Unseen> {
     let smooth = grey.smooth(SADDLES_PX);
     let saddles = saddles(&smooth);
@@ -106,17 +106,17 @@ fn coarse(grey: &Grey, board: &Board) -> Result<Vec<Vector2<f64>>, Unseen> {
     Err(Unseen::Part { seen: largest.len().min(board.count()), of: board.count() })
 }
 
-/// Where a corner of the board is in a grid with so many columns and rows.
+/// Position of a corner of the board in a grid with this many columns and rows.
 type Turn = fn([usize; 2], [usize; 2]) -> [usize; 2];
 
-/// The saddles of a grid as the board's corners; `None` if it is not this board.
+/// Returns the saddles of a grid as the board's corners; `None` if it is not this board.
 fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Board) -> Option<Vec<Vector2<f64>>> {
     let [columns, rows] = size(cells);
     if cells.len() != board.count() {
         return None;
     }
     let [across, down] = board.corners();
-    // Quarter turns, each right-handed as the board is.
+    // Quarter turns, each right-handed like the board.
     let turns: [Turn; 4] = [
         |[i, j], _| [i, j],
         |[i, j], [columns, _]| [(columns - 1).wrapping_sub(j), i],
@@ -128,7 +128,8 @@ fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Board) -> 
         let all: Option<Vec<&Saddle>> =
             (0..down).flat_map(|j| (0..across).map(move |i| [i, j])).map(|[i, j]| saddle(i, j)).collect();
         let all = all?;
-        // Below a way to the right from a corner is a black square where column and row are both even or both odd; most ways have to say so.
+        // Below an edge to the right of a corner there is a black square if column and row are both even or both odd;
+        // most edges must agree.
         let says = |at: usize| {
             let [from, to] = [all[at], all[at + 1]];
             let contrast = from.contrast.min(to.contrast);
@@ -141,7 +142,7 @@ fn in_order(smooth: &Grey, saddles: &[Saddle], cells: &Cells, board: &Board) -> 
     })
 }
 
-/// The corners exactly, and how sharp the picture is.
+/// Locates the corners exactly, and measures the sharpness of the image.
 fn fine(picture: &Grey, board: &Board, rough: &[Vector2<f64>]) -> Option<Sight> {
     let smooth = picture.smooth(CORNERS_PX);
     let [across, down] = board.corners();

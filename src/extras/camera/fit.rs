@@ -1,5 +1,5 @@
-//! The lens and the poses that explain the corners best: least squares by Levenberg and Marquardt's method. The poses are eliminated one by one
-//! (Schur complement), so that a step costs as much as the corners.
+//! The lens and the poses that fit the corners best: least squares by Levenberg and Marquardt's method. The poses are
+//! eliminated one by one (Schur complement), so that the cost of a step is proportional to the number of corners.
 
 use nalgebra::{Isometry3, Matrix2, Matrix2x3, SMatrix, SVector, Translation3, UnitQuaternion, Vector2, Vector3};
 use nima_endoscope::{Bend, Lens};
@@ -12,19 +12,17 @@ type Outer = SMatrix<f64, 6, 6>;
 pub(crate) type Parameters = SVector<f64, PARAMETERS>;
 type Motion = SVector<f64, 6>;
 
-/// A step that gains less than this share is the last one.
+/// The iteration ends when a step gains less than this fraction.
 const GAIN: f64 = 1e-9;
 const DAMPING: f64 = 1e-3;
 const DAMPING_MOST: f64 = 1e9;
 
-/// Which terms of a lens are found; the others stay as they are.
+/// The terms of a lens that are fitted; the others stay constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Terms {
-    /// Pixels may be other than square.
+    /// Different focal lengths across and down, for pixels that are not square.
     pub aspect: bool,
-    /// The second radial term.
     pub k2: bool,
-    /// Tangential distortion.
     pub tangential: bool,
 }
 
@@ -33,7 +31,7 @@ impl Terms {
         [true, self.aspect, true, true, true, self.k2, self.tangential, self.tangential]
     }
 
-    /// How many they are.
+    /// Number of fitted parameters.
     pub fn count(self) -> usize {
         self.are_found().into_iter().filter(|found| *found).count()
     }
@@ -47,7 +45,7 @@ pub(crate) struct Corners {
 }
 
 impl Corners {
-    /// Squared distances between where they are seen and where they should be; `None` if the lens does not see them.
+    /// Returns the squared distances between observed and predicted corners; `None` if the lens does not see them.
     pub(crate) fn squares(&self, lens: &Lens, pose: &Isometry3<f64>) -> Option<Vec<f64>> {
         let pairs = self.places_m.iter().zip(&self.seen_px);
         pairs
@@ -69,13 +67,13 @@ pub(crate) struct Fit {
     pub(crate) poses: Vec<Isometry3<f64>>,
 }
 
-/// The equations of one step: of the lens, of each pose, and between them.
+/// The equations of one step: those of the lens, of each pose, and between them.
 struct Equations {
     lens: (Inner, Parameters),
     poses: Vec<(Mixed, Outer, Motion)>,
 }
 
-/// How the place of a corner moves with the lens, and with the pose (turned, then shifted, in the camera's frame).
+/// Derivative of a corner's position by the lens, and by the pose (rotation, then translation, in the camera's frame).
 fn slopes(
     lens: &Lens,
     pose: &Isometry3<f64>,
@@ -150,7 +148,7 @@ impl Fit {
         Some((self.square(views)? / count.max(1) as f64).sqrt())
     }
 
-    /// In at most so many steps.
+    /// Refines the fit in at most this many steps.
     pub(crate) fn refined(mut self, views: &[Corners], terms: Terms, steps: usize) -> Option<Self> {
         let mut square = self.square(views)?;
         let mut damping = DAMPING;
@@ -190,7 +188,7 @@ impl Fit {
         Self { lens, poses: poses.collect() }
     }
 
-    /// Standard deviations of the parameters; infinite where the views do not determine them.
+    /// Standard deviations of the parameters; infinite if the views do not determine them.
     pub(crate) fn deviations(&self, views: &[Corners], terms: Terms) -> Option<Parameters> {
         let count: usize = views.iter().map(|view| 2 * view.seen_px.len()).sum();
         let free = count.saturating_sub(terms.count() + 6 * views.len());
@@ -215,7 +213,7 @@ impl Fit {
 }
 
 impl Equations {
-    /// Those of the lens alone, with this damping.
+    /// Returns the equations of the lens alone, with this damping.
     fn reduced(&self, damping: f64) -> Option<(Inner, Parameters)> {
         let (mut inner, mut right) = self.lens;
         damp(&mut inner, damping);
@@ -247,7 +245,7 @@ fn damp<const N: usize>(matrix: &mut SMatrix<f64, N, N>, damping: f64) {
     }
 }
 
-/// The pose alone that explains a view best, from a first one.
+/// Returns the pose that fits a view best, starting from an initial one.
 pub(crate) fn refined_pose(lens: &Lens, view: &Corners, first: Isometry3<f64>, steps: usize) -> Option<Isometry3<f64>> {
     let mut pose = first;
     let mut damping = DAMPING;

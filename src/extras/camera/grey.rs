@@ -1,12 +1,13 @@
-//! A grey picture.
+//! A grey image.
 
 use nalgebra::Vector2;
 use nima_endoscope::Picture;
 
-/// Share of red, green and blue in brightness (BT.601).
+/// Weights of red, green and blue in brightness (BT.601).
 const SHARES: [f32; 3] = [0.299, 0.587, 0.114];
 
-/// Brightness of each pixel, 0 to 255, row by row from the upper left corner. A pixel's middle is half a pixel from its edges.
+/// Brightness of each pixel, 0 to 255, row by row from the upper left corner. The centre of a pixel is half a pixel
+/// from its edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grey {
     size_px: [usize; 2],
@@ -14,13 +15,13 @@ pub struct Grey {
 }
 
 impl Grey {
-    /// `None` if there are not as many values as pixels.
+    /// `None` if the numbers of values and pixels differ.
     pub fn new(size_px: [usize; 2], values: Vec<f32>) -> Option<Self> {
         let is_whole = values.len() == size_px[0] * size_px[1] && !values.is_empty();
         is_whole.then_some(Self { size_px, values })
     }
 
-    /// The brightness of a picture.
+    /// Returns the brightness of an image.
     pub fn of(picture: &Picture) -> Option<Self> {
         let grey = |pixel: &[u8]| pixel.iter().zip(SHARES).map(|(value, share)| f32::from(*value) * share).sum();
         Self::new(picture.size_px, picture.rgba.chunks_exact(4).map(|pixel| grey(&pixel[..3])).collect())
@@ -31,7 +32,6 @@ impl Grey {
         self.size_px
     }
 
-    /// All values.
     pub fn values(&self) -> &[f32] {
         &self.values
     }
@@ -40,7 +40,7 @@ impl Grey {
         &self.values[y * self.size_px[0]..][..self.size_px[0]]
     }
 
-    /// Brightness at a place (px), between the pixels by their distance.
+    /// Brightness at a position (px), interpolated between pixels.
     pub(crate) fn at(&self, place_px: &Vector2<f64>) -> f64 {
         let [width, height] = self.size_px;
         let within = |at: f64, side: usize| (at - 0.5).clamp(0.0, (side - 1) as f64);
@@ -55,7 +55,7 @@ impl Grey {
         upper * (1.0 - v) + lower * v
     }
 
-    /// Smoothed by a Gaussian of this standard deviation, px.
+    /// Smooths by a Gaussian with this standard deviation, px.
     pub(crate) fn smooth(&self, sigma_px: f32) -> Self {
         let [width, height] = self.size_px;
         let reach = (3.0 * sigma_px).ceil() as usize;
@@ -87,7 +87,7 @@ impl Grey {
         Self { size_px: self.size_px, values }
     }
 
-    /// Half as wide and high: the mean of four pixels each; `None` if nothing would remain.
+    /// Returns the image at half its width and height: the mean of four pixels each; `None` if nothing would remain.
     pub(crate) fn halved(&self) -> Option<Self> {
         let [width, height] = self.size_px.map(|side| side / 2);
         let mut values = Vec::with_capacity(width * height);

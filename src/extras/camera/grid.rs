@@ -1,6 +1,6 @@
-//! The saddles of a board in their rows and columns. Neighbours are joined where light is on one side of the way between them and dark on the
-//! other: that holds between neighbours only, however the lens bends the board. Which side is light tells rows from columns, because it
-//! alternates from square to square.
+//! Arranges the saddles of a board into rows and columns. Two saddles are neighbours if one side of the line between
+//! them is light and the other dark: this holds only between neighbours, however the lens distorts the board. Since the
+//! light side alternates from square to square, it distinguishes rows from columns.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -8,25 +8,26 @@ use nalgebra::Vector2;
 
 use crate::{Grey, saddle::Saddle};
 
-/// So many of the nearest saddles are looked at as neighbours.
+/// Number of nearest saddles that are considered as neighbours.
 const NEAREST: usize = 12;
-/// Places along the way between two saddles at which both sides are compared, in lengths.
+/// Positions along the edge between two saddles at which both sides are compared, in lengths.
 const ALONG: [f64; 5] = [0.25, 0.37, 0.5, 0.63, 0.75];
-/// How far beside the way, in lengths, and px at least.
+/// Distance of the compared points from the edge, in lengths, and minimum in px.
 const BESIDE: f64 = 0.15;
 const BESIDE_PX: f64 = 1.5;
-/// Least difference between both sides, in contrasts of the ends.
+/// Minimum difference between both sides, relative to the contrast of the ends.
 const DIFFERENCE: f64 = 0.3;
 
-/// Cosine of the angle between the ways to both neighbours in a row, at most; and one way from corner to corner in lengths of the one before.
+/// Maximum cosine of the angle between the edges to both neighbours in a row; and range of the ratio between successive
+/// edges.
 const OPPOSITE: f64 = -0.7;
 const ALIKE: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
-/// A way along the edge between two squares.
+/// An edge between two squares.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     to: usize,
-    /// The right-hand side is light.
+    /// Whether the right-hand side is light.
     light_right: bool,
 }
 
@@ -35,7 +36,8 @@ pub(crate) type Cells = BTreeMap<[usize; 2], usize>;
 /// The same while they grow to all sides.
 type Growing = BTreeMap<[i32; 2], usize>;
 
-/// Whether the right-hand side of the way from one place to another is the light one (px; y is down); `None` if that is not so all the way.
+/// Whether the right-hand side of the line between two points is the light one (px; y is down); `None` if this is not
+/// uniform along the line.
 pub(crate) fn light_side(picture: &Grey, [from, to]: [&Vector2<f64>; 2], contrast: f64) -> Option<bool> {
     let way = to - from;
     let length = way.norm();
@@ -73,7 +75,7 @@ fn edges(picture: &Grey, saddles: &[Saddle]) -> Vec<Vec<Edge>> {
     all
 }
 
-/// Every grid of saddles in a picture, the largest first, with its first column and row at zero.
+/// Returns every grid of saddles in an image, the largest first, with its first column and row at zero.
 pub(crate) fn grids(picture: &Grey, saddles: &[Saddle]) -> Vec<Cells> {
     let edges = edges(picture, saddles);
     let mut used = vec![false; saddles.len()];
@@ -95,7 +97,7 @@ pub(crate) fn grids(picture: &Grey, saddles: &[Saddle]) -> Vec<Cells> {
     all
 }
 
-/// A saddle of the grid that grows, and the ways to the next column and row, px.
+/// A saddle at the edge of the growing grid, and the steps to the next column and row, px.
 struct Front {
     index: usize,
     cell: [i32; 2],
@@ -105,11 +107,11 @@ struct Front {
 /// Grows a grid from a saddle with four neighbours.
 fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing> {
     let way = |from: usize, to: usize| saddles[to].place_px - saddles[from].place_px;
-    // Along columns the right-hand side is light at the seed; the row's way is the one to the right of it.
+    // Along columns the right-hand side is light at the seed; the row's direction is to the right of it.
     let along =
         |light: bool| edges[seed].iter().filter(move |edge| edge.light_right == light).map(|edge| way(seed, edge.to));
     let [columns, rows] = [true, false].map(|light| along(light).collect::<Vec<_>>());
-    // Of a saddle at the border of the board a farther one may be taken for a neighbour: then rows and columns could change places.
+    // At the border of the board a farther saddle may be mistaken for a neighbour, which could swap rows and columns.
     let are_opposite = |ways: &[Vector2<f64>]| match ways {
         [a, b] => a.dot(b) < OPPOSITE * a.norm() * b.norm(),
         _ => false,
@@ -146,7 +148,7 @@ fn grown(saddles: &[Saddle], edges: &[Vec<Edge>], seed: usize) -> Option<Growing
     Some(cells)
 }
 
-/// Without what hangs on by one neighbour only: a corner of a board has two.
+/// Removes saddles with only one neighbour: a corner of a board has two.
 fn pruned(mut cells: Growing) -> Growing {
     loop {
         let beside = [[1, 0], [-1, 0], [0, 1], [0, -1]];
@@ -163,7 +165,8 @@ fn pruned(mut cells: Growing) -> Growing {
     }
 }
 
-/// Without rows and columns at the border of which less than half is there: a board has whole ones, and noise beside it has not.
+/// Removes incomplete rows and columns at the border, of which less than half exists: those of a board are complete,
+/// those of noise next to it are not.
 fn trimmed(mut cells: Growing) -> Growing {
     loop {
         let before = cells.len();

@@ -1,4 +1,4 @@
-//! How well a lens predicts views from which it was not found.
+//! Prediction error of a lens on views that were not used for its fit.
 
 use nima_endoscope::Lens;
 
@@ -7,7 +7,7 @@ use crate::{
     plane,
 };
 
-/// The views are divided into so many parts, each of which is left out once.
+/// Number of parts into which the views are divided; each is held out once.
 const FOLDS: usize = 4;
 const STEPS: usize = 12;
 
@@ -18,7 +18,8 @@ pub(crate) struct HeldOut {
     pub(crate) max_px: f64,
 }
 
-/// Leaves views out in turn. Of a view that was left out, every second corner tells the board's pose, and the others are compared.
+/// Holds out views in turn. In a held-out view, every second corner determines the board's pose, and the others are
+/// compared.
 pub(crate) fn held_out(fit: &Fit, views: &[Corners], terms: Terms) -> Option<HeldOut> {
     let mut squares = Vec::new();
     for fold in 0..FOLDS {

@@ -1,10 +1,10 @@
-//! Calibration of the endoscope's camera, from pictures of a checkerboard.
+//! Calibration of the endoscope camera from images of a checkerboard.
 //!
-//! [`find`] finds a [`Board`](nima_endoscope::Board) in a grey picture, whole, with its corners to some hundredths of a pixel, or says what it
-//! lacks ([`Unseen`]). [`Session`] takes the views that a calibration needs and says which is wanted next. [`calibrate`] finds the lens (Zhang
-//! 2000, refined by Levenberg and Marquardt's method) with as many terms as pay on held-out views, and judges it. [`place`] finds where the
-//! camera is from corners of the board that the instrument's tip has touched. No file, thread,
-//! clock or window.
+//! [`find`] finds a complete [`Board`](nima_endoscope::Board) in a grey image, with its corners accurate to some
+//! hundredths of a pixel, or returns the reason ([`Unseen`]). [`Session`] collects the views for a calibration and
+//! requests the next one. [`calibrate`] computes the lens (Zhang 2000, refined by Levenberg and Marquardt's method),
+//! with those terms that improve held-out views, and judges it. [`place`] computes the pose of the camera from corners
+//! of the board that were touched with the instrument's tip. Uses no file, thread, clock or window.
 
 mod calibrate;
 mod coverage;

@@ -1,5 +1,5 @@
-//! Where the camera is in the workspace, from corners of a board that lies still: seen by the camera, and touched with the tip of an instrument
-//! whose place is known.
+//! Pose of the camera in the workspace, from corners of a board at rest: seen by the camera, and touched with the tip
+//! of an instrument whose position is known.
 
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector2, Vector3};
 use nima_core::calibration::Verdict;
@@ -11,72 +11,72 @@ use crate::{
     plane,
 };
 
-/// Fewest touched corners.
+/// Minimum number of touched corners.
 const TOUCHES: usize = 4;
-/// The touched corners have to span a plane: least spread in its shorter direction, in squares.
+/// Minimum spread of the touched corners in their shorter direction, in squares, so that they span a plane.
 const SPREAD: f64 = 1.0;
-/// Largest distance between where touched corners were and where a rigid board has them, m.
+/// Maximum distance between touched corners and a rigid board, m.
 const RIGID_M: f64 = 0.002;
-/// Largest error of held-out corners, in widths of the picture: 10 px of 1280.
+/// Maximum error of held-out corners, in widths of the image: 10 px of 1280.
 const HELD_OUT: f64 = 10.0 / 1280.0;
 const STEPS: usize = 40;
 
-/// A corner that was touched.
+/// A touched corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// Column and row of the corner, from zero.
     pub corner: [usize; 2],
-    /// The tip at it, in the workspace, m.
+    /// Position of the tip in the workspace, m.
     pub tip_m: Vector3<f64>,
 }
 
-/// Why there is no place.
+/// Why the pose cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlaceError {
     /// Too few corners were touched.
     TooFew {
-        /// Corners that were touched, and that are needed.
+        /// Number of touched corners.
         touched: usize,
-        /// Corners that are needed.
+        /// Required number of corners.
         needed: usize,
     },
     /// The touched corners are on one line.
     OneLine,
-    /// The board cannot be placed before the lens.
+    /// No pose of the board fits what the camera sees.
     NotSeen,
 }
 
-/// What makes a place useless.
+/// Why a pose may not be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lack {
-    /// The touched points are not those of a flat board with these squares: a corner was missed, or the board moved.
+    /// The touched points do not fit a flat board with these squares: a corner was missed, or the board moved.
     NotRigid {
         /// The corner that is farthest away.
         corner: [usize; 2],
-        /// How far, m.
+        /// Its distance, m.
         by_m: f64,
     },
     /// Touched points are too far from where the camera sees them.
     HeldOut {
         /// Root mean square, px.
         rms_px: f64,
-        /// Allowed, px.
+        /// Limit, px.
         most_px: f64,
     },
 }
 
-/// Where the camera is.
+/// Pose of the camera.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// The camera's frame in the workspace.
     pub world_from_camera: Isometry3<f64>,
     /// Root mean square of the distances of the touched points from a rigid board, m.
     pub fitted_m: f64,
-    /// Root mean square of the distances of touched points from the seen corners, each with a camera found without it, px.
+    /// Root mean square of the distances of touched points from the seen corners, each with the camera's pose computed
+    /// without it, px.
     pub held_out_px: f64,
-    /// The largest of these.
+    /// Maximum of these distances, px.
     pub held_out_max_px: f64,
-    /// What makes it useless; `None` if nothing does.
+    /// Why it may not be used; `None` if it may.
     pub lack: Option<Lack>,
 }
 
@@ -87,17 +87,17 @@ impl Placed {
     }
 }
 
-/// The pose of a board before a lens.
+/// Returns the pose of a board in front of a lens.
 pub fn board_pose(board: &Board, lens: &Lens, sight: &Sight) -> Option<Isometry3<f64>> {
     let view = Corners { places_m: board.places_m(), seen_px: sight.corners_px.clone() };
     let first = plane::pose(lens, &view.places_m, &view.seen_px)?;
     refined_pose(lens, &view, first, STEPS)
 }
 
-/// The camera's place from touched corners of a board that it sees.
+/// Computes the camera's pose from touched corners of a board that it sees.
 ///
 /// # Errors
-/// [`PlaceError`].
+/// [`PlaceError`] if the pose cannot be computed.
 pub fn place(board: &Board, lens: &Lens, sight: &Sight, touches: &[Touch]) -> Result<Placed, PlaceError> {
     if touches.len() < TOUCHES {
         return Err(PlaceError::TooFew { touched: touches.len(), needed: TOUCHES });

@@ -1,11 +1,11 @@
-//! Views of a plane: the map from it to the picture, a first focal length (Zhang 2000) and a first pose.
+//! Views of a plane: its homography to the image, an initial focal length (Zhang 2000) and an initial pose.
 
 use nalgebra::{
     DMatrix, Isometry3, Matrix3, Rotation3, SMatrix, SymmetricEigen, Translation3, UnitQuaternion, Vector2, Vector3,
 };
 use nima_endoscope::Lens;
 
-/// Moves and scales places so that their mean is zero and their mean distance is one.
+/// Moves and scales positions so that their mean is zero and their mean distance is one.
 fn normaliser(places: &[Vector2<f64>]) -> Matrix3<f64> {
     let count = places.len().max(1) as f64;
     let middle = places.iter().sum::<Vector2<f64>>() / count;
@@ -14,7 +14,7 @@ fn normaliser(places: &[Vector2<f64>]) -> Matrix3<f64> {
     Matrix3::new(scale, 0.0, -scale * middle.x, 0.0, scale, -scale * middle.y, 0.0, 0.0, 1.0)
 }
 
-/// The homography from places on a plane to places in a picture; `None` where they do not determine one.
+/// Returns the homography from positions on a plane to positions in an image; `None` if they do not determine one.
 pub(crate) fn homography(from: &[Vector2<f64>], to: &[Vector2<f64>]) -> Option<Matrix3<f64>> {
     if from.len() < 4 || from.len() != to.len() {
         return None;
@@ -38,8 +38,8 @@ pub(crate) fn homography(from: &[Vector2<f64>], to: &[Vector2<f64>]) -> Option<M
     whole.iter().all(|part| part.is_finite()).then_some(whole)
 }
 
-/// The focal length (in units of the picture's places) that makes the columns of all homographies square to each other and equally long, with the
-/// axis through the middle. `None` if no view is tilted.
+/// Returns the focal length (in units of the image positions) that makes the columns of all homographies orthogonal and
+/// equally long, with the axis through the middle. `None` if no view is tilted.
 pub(crate) fn focal(homographies: &[Matrix3<f64>]) -> Option<f64> {
     let mut rows = Vec::new();
     for h in homographies {
@@ -53,7 +53,7 @@ pub(crate) fn focal(homographies: &[Matrix3<f64>]) -> Option<f64> {
     (square > 0.0 && square.is_finite()).then(|| square.sqrt().recip())
 }
 
-/// The pose of a plane whose places (m) are seen at these places (px) by a lens.
+/// Returns the pose of a plane whose positions (m) are seen at these positions (px) by a lens.
 pub(crate) fn pose(lens: &Lens, places_m: &[Vector3<f64>], seen_px: &[Vector2<f64>]) -> Option<Isometry3<f64>> {
     let flat: Option<Vec<_>> = seen_px.iter().map(|place| lens.direction(place).map(|sight| sight.xy())).collect();
     let plane: Vec<_> = places_m.iter().map(Vector3::xy).collect();
@@ -69,7 +69,7 @@ pub(crate) fn pose(lens: &Lens, places_m: &[Vector3<f64>], seen_px: &[Vector2<f6
     place.iter().all(|part| part.is_finite()).then(|| Isometry3::from_parts(Translation3::from(place), rotation))
 }
 
-/// The rotation nearest to a matrix.
+/// Returns the rotation nearest to a matrix.
 pub(crate) fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f64>> {
     let svd = matrix.try_svd(true, true, 1e-14, 200)?;
     let u = svd.u?;
@@ -83,7 +83,7 @@ pub(crate) fn nearest_rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f
         .then(|| UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation)))
 }
 
-/// Singular values of places about their mean, the largest first; m.
+/// Singular values of positions about their mean, the largest first; m.
 pub(crate) fn spread(places: &[Vector3<f64>]) -> [f64; 3] {
     let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
     let columns: Vec<Vector3<f64>> = places.iter().map(|place| place - middle).collect();

@@ -1,23 +1,24 @@
-//! Corners to a fraction of a pixel, and how sharp the edges between them are.
+//! Locates corners to a fraction of a pixel, and measures the sharpness of the edges between them.
 
 use nalgebra::{Matrix2, Vector2};
 
 use crate::Grey;
 
-/// Half the side of the window around a corner, in distances to the next corner, and its limits, px.
+/// Half the side of the window around a corner, relative to the distance to the next corner, and its limits, px.
 const WINDOW: f64 = 0.35;
 const WINDOW_PX: std::ops::RangeInclusive<f64> = 3.0..=11.0;
 const STEPS: usize = 30;
-/// A smaller step is the last one, px.
+/// The iteration ends at a smaller step, px.
 const STILL_PX: f64 = 1e-3;
-/// Places along an edge over which its profile is averaged, in lengths.
+/// Positions along an edge over which its profile is averaged, in lengths.
 const ALONG: [f64; 5] = [0.3, 0.4, 0.5, 0.6, 0.7];
-/// Reach of a profile, in lengths of the edge; its step, px.
+/// Extent of a profile, in lengths of the edge; its step, px.
 const REACH: f64 = 0.3;
 const STEP_PX: f64 = 0.5;
 
-/// The place where all edges of a corner meet: each gradient around it is square to the way there (Foerstner 1987). `spacing_px` is the distance
-/// to the next corner. `None` if there is none near `start_px`.
+/// Returns the point where all edges of a corner meet: each gradient around it is perpendicular to the direction to
+/// that point (Foerstner 1987). `spacing_px` is the distance to the next corner. `None` if there is none near
+/// `start_px`.
 pub(crate) fn corner(smooth: &Grey, start_px: Vector2<f64>, spacing_px: f64) -> Option<Vector2<f64>> {
     let reach_px = (WINDOW * spacing_px).clamp(*WINDOW_PX.start(), *WINDOW_PX.end());
     let mut place_px = start_px;
@@ -63,7 +64,8 @@ fn towards(smooth: &Grey, place_px: &Vector2<f64>, reach_px: f64) -> Option<Vect
     step.iter().all(|part| part.is_finite()).then(|| place_px + step)
 }
 
-/// Standard deviation of the blur across the edge between two corners, px: difference of light and dark over the steepest slope.
+/// Standard deviation of the blur across the edge between two corners, px: difference of light and dark over the
+/// steepest slope.
 pub(crate) fn blur_px(picture: &Grey, [from, to]: [&Vector2<f64>; 2]) -> Option<f64> {
     let way = to - from;
     let length = way.norm();

@@ -1,4 +1,4 @@
-//! What a calibration of a lens has found, and whether it may be used.
+//! Results of a lens calibration, and whether it may be used.
 
 use nalgebra::Vector2;
 use nima_core::calibration::Verdict;
@@ -9,52 +9,48 @@ use crate::{Coverage, Terms};
 /// Standard deviations of a lens's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviations {
-    /// Of the focal lengths, px.
     pub focal_px: Vector2<f64>,
-    /// Of the centre, px.
     pub centre_px: Vector2<f64>,
-    /// Of the distortion.
     pub bend: Bend,
 }
 
 /// Why a view was not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
-    /// It is blurred.
     Blurred,
-    /// The board was there before.
+    /// The board had been in this place before.
     Repeated,
-    /// Its corners do not fit to the others: the board is not flat, or was misread.
+    /// Its corners do not fit the others: the board is not flat, or was misread.
     Outlier,
 }
 
-/// What is missing for a good calibration.
+/// A deficiency of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// Too few views can be used.
     TooFew {
-        /// Views that can be used, and views that are needed.
+        /// Usable views.
         used: usize,
-        /// Views that are needed.
+        /// Required views.
         needed: usize,
     },
     /// Too few remain, because most are blurred.
     Blurred {
-        /// Blurred views.
+        /// Number of blurred views.
         blurred: usize,
-        /// All views.
+        /// Number of all views.
         of: usize,
     },
-    /// Too few remain, because the board was again and again at the same place.
+    /// Too few remain, because the board was in the same place repeatedly.
     Repeated {
-        /// Repeated views.
+        /// Number of repeated views.
         repeated: usize,
-        /// All views.
+        /// Number of all views.
         of: usize,
     },
     /// The board was parallel to itself in all views.
     Parallel {
-        /// The largest angle between two views, degrees.
+        /// Maximum angle between two views, degrees.
         most_deg: f64,
     },
     /// It was tilted about one axis only.
@@ -62,21 +58,21 @@ pub enum Cause {
         /// Spread of the tilt in the other direction, degrees.
         spread_deg: f64,
     },
-    /// Too little of the picture has shown corners.
+    /// Corners were seen in too small a part of the image.
     Coverage {
-        /// Share of the picture.
+        /// Fraction of the image.
         share: f64,
     },
-    /// No lens of this kind explains the corners.
+    /// No lens of this kind fits the corners.
     NoFit,
-    /// The lens does not predict views that were left out.
+    /// The lens does not predict held-out views.
     HeldOut {
         /// Root mean square, px.
         rms_px: f64,
-        /// Allowed, px.
+        /// Limit, px.
         most_px: f64,
     },
-    /// The views leave the focal length or the centre open.
+    /// The views do not determine the focal length or the centre.
     Uncertain {
         /// Standard deviation of the focal length, percent.
         focal_percent: f64,
@@ -86,7 +82,6 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// What it makes of the calibration.
     pub const fn verdict(&self) -> Verdict {
         match self {
             Self::NoFit | Self::HeldOut { .. } | Self::Blurred { .. } => Verdict::PoorData,
@@ -95,37 +90,35 @@ impl Cause {
     }
 }
 
-/// The result of a calibration.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// The lens; `None` if none was found.
+    /// `None` if no lens was found.
     pub lens: Option<Found>,
-    /// Views that were used, by their places in the list.
+    /// Used views, by their indices in the list.
     pub used: Vec<usize>,
     /// Views that were not used.
     pub left_out: Vec<(usize, LeftOut)>,
-    /// Where corners were, of the used views.
+    /// Positions of corners in the used views.
     pub coverage: Coverage,
-    /// What is missing; `None` if nothing is.
+    /// The deficiency; `None` if there is none.
     pub cause: Option<Cause>,
 }
 
-/// A lens as it was found.
+/// A computed lens.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
-    /// The lens.
     pub lens: Lens,
-    /// Its terms; those that do not pay on held-out views are left out.
+    /// Its terms; those that do not improve held-out views are left out.
     pub terms: Terms,
-    /// How well each parameter is determined.
+    /// Uncertainty of each parameter.
     pub deviations: Deviations,
     /// Root mean square of the corners' distances, px.
     pub fitted_px: f64,
-    /// The same on views that were left out.
+    /// The same on held-out views.
     pub held_out_px: f64,
-    /// The largest of these.
+    /// Maximum of these, px.
     pub held_out_max_px: f64,
-    /// The largest angle between the boards of two views, degrees.
+    /// Maximum angle between the boards of two views, degrees.
     pub tilt_deg: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Places where a picture is a saddle, as where four squares of a board meet.
+//! Saddle points of an image, as at the corners of a board, where four squares meet.
 
 use std::f64::consts::TAU;
 
@@ -6,22 +6,22 @@ use nalgebra::Vector2;
 
 use crate::Grey;
 
-/// A place is the strongest within so many pixels.
+/// A saddle must be the strongest within this many pixels.
 const APART: usize = 4;
-/// A saddle this much weaker than the strongest is none; uneven light makes a factor of 25, blur some more.
+/// Minimum strength of a saddle relative to the strongest; uneven light causes a factor of 25, blur some more.
 const WEAKEST: f32 = 0.002;
-/// Most places that are looked at closely, and that are kept.
+/// Maximum number of candidates examined, and of saddles kept.
 const LOOKED_AT: usize = 3000;
 const KEPT: usize = 900;
-/// Samples of the ring around a place, and its radius, px.
+/// Number of samples of the ring around a candidate, and its radius, px.
 const RING: usize = 32;
 const RADIUS_PX: f64 = 5.0;
-/// Least difference of light and dark on the ring, of 255.
+/// Minimum difference of light and dark on the ring, of 255.
 const CONTRAST: f64 = 14.0;
-/// Least length of a quarter of the ring, samples; the four together are 32.
+/// Minimum length of a quarter of the ring, samples; the four together are 32.
 const QUARTER: usize = 3;
 
-/// A place where light and dark meet crosswise.
+/// A point where light and dark meet crosswise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Saddle {
     pub(crate) place_px: Vector2<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct Saddle {
     pub(crate) contrast: f64,
 }
 
-/// All saddles of a smooth picture, the strongest first.
+/// Returns all saddles of a smooth image, the strongest first.
 pub(crate) fn saddles(smooth: &Grey) -> Vec<Saddle> {
     let [width, height] = smooth.size_px();
     if width < 4 * APART || height < 4 * APART {
@@ -52,7 +52,7 @@ pub(crate) fn saddles(smooth: &Grey) -> Vec<Saddle> {
     looked_at.filter_map(|(_, at)| crosswise(smooth, &middle(at))).take(KEPT).collect()
 }
 
-/// Minus the determinant of the second derivatives: above zero at a saddle.
+/// Minus the determinant of the second derivatives: positive at a saddle.
 fn strengths(smooth: &Grey) -> Vec<f32> {
     let [width, height] = smooth.size_px();
     let mut strength = vec![0.0; width * height];
@@ -74,7 +74,7 @@ fn strengths(smooth: &Grey) -> Vec<f32> {
 fn is_peak(strength: &[f32], width: usize, [x, y]: [usize; 2]) -> bool {
     let here = (strength[y * width + x], y * width + x);
     (y - APART..=y + APART).all(|v| {
-        // Of equal ones the first.
+        // Among equal ones the first counts.
         (x - APART..=x + APART).all(|u| {
             let at = v * width + u;
             strength[at] < here.0 || (strength[at] <= here.0 && at >= here.1)
@@ -82,7 +82,7 @@ fn is_peak(strength: &[f32], width: usize, [x, y]: [usize; 2]) -> bool {
     })
 }
 
-/// Whether light and dark alternate four times around a place, with opposite quarters alike.
+/// Whether light and dark alternate four times around a point, with opposite quarters alike.
 fn crosswise(smooth: &Grey, place_px: &Vector2<f64>) -> Option<Saddle> {
     let ring: [f64; RING] = std::array::from_fn(|k| {
         let (sin, cos) = (TAU * k as f64 / RING as f64).sin_cos();

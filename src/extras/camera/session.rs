@@ -1,4 +1,4 @@
-//! Takes views while the board is moved, and says which one is wanted next.
+//! Collects views while the board is moved, and requests the next one.
 
 use nalgebra::Vector3;
 use nima_endoscope::{Board, Lens};
@@ -9,55 +9,51 @@ use crate::{
     plane,
 };
 
-/// A board that has moved less from one picture to the next is held still, in widths of the picture: 1 px of 1280.
+/// A board that has moved less between two images is held still, in widths of the image: 1 px of 1280.
 const STILL: f64 = 0.0008;
-/// Views that are wanted, and share of the picture with corners.
+/// Number of views requested, and fraction of the image with corners.
 const WANTED: usize = VIEWS + 4;
 const SHARE: f64 = 0.75;
-/// A tilt counts from this angle on, degrees; a smaller one than the second is none.
+/// A tilt counts from the first angle on, degrees; below the second the board counts as flat.
 const TILTED_DEG: f64 = 15.0;
 const FLAT_DEG: f64 = 12.0;
-/// Focal length as long as none is known, in widths of the picture.
+/// Focal length while it is unknown, in widths of the image.
 const FOCAL: f64 = 0.8;
 
-/// Which side of the board is nearer to the lens.
+/// The side of the board that is nearer to the lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// The left one.
     Left,
-    /// The right one.
     Right,
-    /// The upper one.
     Up,
-    /// The lower one.
     Down,
 }
 
-/// The view that is wanted next.
+/// The view that is requested next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
-    /// Straight before the lens.
+    /// Parallel to the lens.
     Flat,
     /// With this side nearer.
     Tilted(Way),
-    /// In this part of the picture.
+    /// In this part of the image.
     There(Region),
-    /// Anywhere else.
+    /// In any other pose.
     Other,
-    /// None: there are enough.
+    /// There are enough views.
     Complete,
 }
 
-/// What became of a view.
+/// Result of an offered view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Offer {
-    /// It was taken.
+    /// Added.
     Taken,
-    /// The board moves.
+    /// The board is moving.
     Moving,
     /// It is blurred.
     Blurred,
-    /// The board was there before.
+    /// The board had been in this place before.
     TakenHere,
 }
 
@@ -71,27 +67,26 @@ pub struct Session {
 }
 
 impl Session {
-    /// Without views, for pictures of this size.
+    /// Starts without views, for images of this size.
     pub const fn new(board: Board, size_px: [usize; 2]) -> Self {
         Self { board, size_px, views: Vec::new(), last: None }
     }
 
-    /// The board.
     pub const fn board(&self) -> &Board {
         &self.board
     }
 
-    /// Size of the pictures, px.
+    /// Size of the images, px.
     pub const fn size_px(&self) -> [usize; 2] {
         self.size_px
     }
 
-    /// The views that were taken.
+    /// Views added so far.
     pub fn views(&self) -> &[Sight] {
         &self.views
     }
 
-    /// Shows the board of another picture; it is taken if it is held still at a new place.
+    /// Offers the board of another image; the view is added if the board is held still in a new place.
     pub fn offer(&mut self, sight: Sight) -> Offer {
         let width = self.size_px[0];
         let before = self.last.replace(sight.clone());
@@ -111,17 +106,16 @@ impl Session {
         Offer::Taken
     }
 
-    /// No board is in the picture.
+    /// Called if there is no board in the image.
     pub fn miss(&mut self) {
         self.last = None;
     }
 
-    /// Removes the view that was taken last.
     pub fn undo(&mut self) {
         self.views.pop();
     }
 
-    /// Where corners were.
+    /// Positions of corners so far.
     pub fn coverage(&self) -> Coverage {
         let mut all = Coverage::default();
         for view in &self.views {
@@ -130,7 +124,7 @@ impl Session {
         all
     }
 
-    /// The view that is wanted next.
+    /// Returns the view that is requested next.
     pub fn asks(&self) -> Ask {
         let tilts = self.tilts_deg();
         if !tilts.iter().any(|[x, y]| x.hypot(*y) < FLAT_DEG) {
@@ -154,7 +148,7 @@ impl Session {
         }
     }
 
-    /// Share of what is wanted, 0 to 1.
+    /// Completed fraction, 0 to 1.
     pub fn share(&self) -> f64 {
         if self.asks() == Ask::Complete {
             return 1.0;
@@ -164,7 +158,8 @@ impl Session {
         (0.5 * (views + seen)).min(0.99)
     }
 
-    /// Of each view about the upright and about the level axis: above zero if the right-hand or the lower side is nearer. By a usual lens.
+    /// Returns the tilts of each view about the vertical and the horizontal axis: positive if the right-hand or the
+    /// lower side is nearer. Assumes a typical lens.
     fn tilts_deg(&self) -> Vec<[f64; 2]> {
         let lens = Lens::simple(self.size_px, FOCAL * self.size_px[0] as f64, 0.0);
         let places_m = self.board.places_m();

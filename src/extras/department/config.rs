@@ -1,4 +1,4 @@
-//! What zenoh may do at each end.
+//! Configuration of zenoh at each end.
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
@@ -6,12 +6,13 @@ use zenoh::Config;
 
 use crate::{DepartmentError, Identity, keys};
 
-/// Watchers that are connected at once, at most.
+/// Maximum number of connected watchers.
 const WATCHERS_MAX: usize = 64;
-/// A watcher that is silent for this long is gone, ms.
+/// A watcher that is silent for this long is disconnected, ms.
 const LEASE_MS: u64 = 5000;
 
-/// A rig listens, and only gives. What a watcher sends beside its requests is dropped at the door.
+/// Returns the configuration of a rig. It accepts connections and only sends. Data of a watcher other than its
+/// requests are dropped on arrival.
 pub(crate) fn rig(own: &Identity, address: &str, scouting: Scouting) -> Result<Config, DepartmentError> {
     let [authority, certificate, key] = [&own.authority, &own.certificate, &own.key].map(|pem| STANDARD.encode(pem));
     let tls = json!({
@@ -27,7 +28,7 @@ pub(crate) fn rig(own: &Identity, address: &str, scouting: Scouting) -> Result<C
         { "id": "asks", "messages": asks, "flows": ["ingress"], "permission": "allow", "key_exprs": [keys::ALL] },
         { "id": "gives", "messages": gives, "flows": ["egress"], "permission": "allow", "key_exprs": [keys::ALL] },
         {
-            "id": "tells that it watches", "messages": ["liveliness_token"], "flows": ["ingress"],
+            "id": "announces that it watches", "messages": ["liveliness_token"], "flows": ["ingress"],
             "permission": "allow", "key_exprs": ["nima/watcher/**"],
         },
     ]);
@@ -45,12 +46,12 @@ pub(crate) fn rig(own: &Identity, address: &str, scouting: Scouting) -> Result<C
             "default_permission": "deny",
             "rules": rules,
             "subjects": [{ "id": "everybody" }],
-            "policies": [{ "rules": ["asks", "gives", "tells that it watches"], "subjects": ["everybody"] }],
+            "policies": [{ "rules": ["asks", "gives", "announces that it watches"], "subjects": ["everybody"] }],
         },
     }))
 }
 
-/// A watcher connects to one rig, and listens nowhere.
+/// A watcher connects to one rig and does not listen.
 pub(crate) fn watcher(own: &Identity, address: &str) -> Result<Config, DepartmentError> {
     let [authority, certificate, key] = [&own.authority, &own.certificate, &own.key].map(|pem| STANDARD.encode(pem));
     config(&json!({
@@ -67,7 +68,7 @@ pub(crate) fn watcher(own: &Identity, address: &str) -> Result<Config, Departmen
                     "connect_certificate_base64": certificate,
                     "connect_private_key_base64": key,
                     "enable_mtls": true,
-                    // Every certificate of a rig of the department will do, whatever its address.
+                    // The certificate of any rig of the department is accepted, whatever its address.
                     "verify_name_on_connect": false,
                 },
                 "tx": { "lease": LEASE_MS },
@@ -77,12 +78,12 @@ pub(crate) fn watcher(own: &Identity, address: &str) -> Result<Config, Departmen
     }))
 }
 
-/// Whether rigs are found without their address, by a multicast that stays in the local network.
+/// Whether rigs can be found without their address, by a multicast within the local network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scouting {
     /// They answer.
     Answers,
-    /// Only their address leads to them.
+    /// Only their address reaches them.
     Silent,
 }
 
@@ -95,7 +96,7 @@ impl Scouting {
     }
 }
 
-/// For looking for rigs.
+/// Configuration for finding rigs.
 pub(crate) fn scout() -> Result<Config, DepartmentError> {
     config(
         &json!({ "mode": "client", "scouting": { "multicast": { "enabled": true }, "gossip": { "enabled": false } } }),

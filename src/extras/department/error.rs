@@ -2,83 +2,55 @@ use std::{io, path::PathBuf};
 
 use nima_session::{copied::CopyError, watched::WatchError};
 
-/// What can go wrong.
+/// Errors of a department.
 #[derive(Debug, thiserror::Error)]
 pub enum DepartmentError {
     /// A name that cannot be used.
-    #[error("\"{0}\" cannot be a name here: use letters, digits and - only, 1 to 40 of them")]
+    #[error("\"{0}\" cannot be used as a name; use 1 to 40 letters, digits and -")]
     Name(String),
-    /// There is no such file.
-    #[error("{path}: there is none; {cure}")]
+    #[error("{path} does not exist; {cure}")]
     Missing {
-        /// The file.
         path: PathBuf,
-        /// What to do.
+        /// Remedy.
         cure: &'static str,
     },
-    /// There is one already.
-    #[error("{0} exists already; delete it first if it is not needed any more")]
+    /// The file exists already.
+    #[error("{0} exists already; delete it first if it is no longer needed")]
     Exists(PathBuf),
-    /// A file cannot be read or written.
     #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// A file is not what it should be.
-    #[error("{path} is no certificate of a department: {why}")]
-    NotOne {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        why: String,
-    },
-    /// A certificate cannot be made.
+    File { path: PathBuf, source: io::Error },
+    #[error("{path} is not a certificate of a department: {why}; use the file issued by nima department")]
+    NotOne { path: PathBuf, why: String },
     #[error("cannot make a certificate: {0}")]
     Certificate(String),
-    /// This machine has the wrong part.
-    #[error("this machine joined as a {is}; what it is to do needs a {needed}: join with another certificate")]
+    /// This machine has the wrong role.
+    #[error("this machine joined as a {is}, but a {needed} is required; join with another certificate")]
     Role {
-        /// What it is.
+        /// Its role.
         is: &'static str,
-        /// What it should be.
+        /// The required role.
         needed: &'static str,
     },
     /// The rig cannot be shared.
-    #[error("cannot share at {address}: {why}; end the program that uses this port, or name another one with --share")]
-    Listen {
-        /// The address.
-        address: String,
-        /// Why.
-        why: String,
-    },
+    #[error(
+        "cannot share at {address}: {why}; end the program that uses this port, or choose another one with --share"
+    )]
+    Listen { address: String, why: String },
     /// The rig does not answer.
     #[error(
-        "no rig answers at {address}: {why}; is it shared (--share), and are both machines of the same department?"
+        "no rig answers at {address}: {why}; share it (--share), and check that both machines belong to the same department"
     )]
-    Connect {
-        /// The address.
-        address: String,
-        /// Why.
-        why: String,
-    },
-    /// It answers no longer.
-    #[error("rig {rig} does not answer: {why}")]
-    Silent {
-        /// Its name.
-        rig: String,
-        /// Why.
-        why: String,
-    },
-    /// The rig records nothing now.
-    #[error("rig {0} runs no loop now")]
+    Connect { address: String, why: String },
+    /// The rig has stopped answering.
+    #[error("rig {rig} does not answer: {why}; check that its console is running")]
+    Silent { rig: String, why: String },
+    /// The rig is not recording now.
+    #[error("rig {0} is not running a loop now; start it there")]
     NoSession(String),
-    /// What it sent cannot be shown.
+    /// The rig's data cannot be shown.
     #[error(transparent)]
     Watch(#[from] WatchError),
-    /// What it sent cannot be written.
+    /// The rig's data cannot be written.
     #[error(transparent)]
     Copy(#[from] CopyError),
 }

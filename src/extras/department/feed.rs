@@ -1,4 +1,4 @@
-//! What a rig publishes, from its recorder: its session in bundles, and what its screen shows.
+//! Publishes a rig's recording: its session in bundles, and the content of its screen.
 
 use std::{
     collections::BTreeMap,
@@ -23,29 +23,29 @@ use nima_session::{
     watched::MomentWriter,
 };
 
-/// Length of a bundle of the session, ns: what its file can lose too.
+/// Duration of a bundle of the session, ns; a remote file can lose at most this much.
 const BUNDLE_NS: u64 = 400_000_000;
-/// And its most bytes.
+/// Maximum size of a bundle, bytes.
 const BUNDLE_BYTES: usize = 4 << 20;
-/// Moments that are sent together: 50 ms.
+/// States sent together: 50 ms.
 const MOMENTS: u64 = 10;
-/// How often what stands is told anew, s: who comes late waits for it.
+/// Interval at which persistent state is repeated, s: a late watcher waits at most this long.
 const RECAP_S: f64 = 1.0;
 
-/// For the thread that publishes.
+/// Input of the publishing thread.
 #[derive(Debug)]
 pub(crate) enum Told {
     /// A session begins.
     Begins(Head),
-    /// A file that tells what runs: its name and its text.
+    /// A file that describes the running session: its name and its text.
     File(String, String),
     /// A part of the session.
     Bundle(Bundle),
-    /// What the screen shows.
+    /// Content of the screen.
     Moments(u64, Vec<u8>),
 }
 
-/// The recorder's side. What the other side does not take in time is dropped.
+/// The recorder's side. Data that the other side does not accept in time are dropped.
 #[derive(Debug)]
 pub(crate) struct Feed {
     to: Sender<Told>,
@@ -154,7 +154,7 @@ impl Drop for Feed {
     }
 }
 
-/// What stands of the events that were told: a screen that comes late needs it.
+/// The events that still apply: a late screen needs them.
 #[derive(Debug, Default)]
 struct Recap {
     told_s: Option<f64>,
@@ -171,7 +171,7 @@ impl Recap {
             Event::Scheduling(_) => self.scheduling = Some(*event),
             Event::StateChanged { side, to, .. } => {
                 let states = &mut self.states[side.index()];
-                // The fault that led here was told before.
+                // The fault that led here was reported before.
                 let is_fault = matches!(to, LoopState::Faulted(_));
                 states.retain(|state| is_fault && matches!(state, Event::FaultRaised { .. }));
                 states.insert(0, *event);
@@ -183,7 +183,7 @@ impl Recap {
         }
     }
 
-    /// All of it, once a second.
+    /// Returns all of them, once per second.
     fn due(&mut self, t_s: f64) -> Option<Vec<Event>> {
         if self.told_s.is_some_and(|told_s| (0.0..RECAP_S).contains(&(t_s - told_s))) {
             return None;

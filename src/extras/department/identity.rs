@@ -1,7 +1,7 @@
-//! Who belongs to a department: certificates that one machine issues.
+//! Membership of a department: certificates issued by one machine.
 //!
-//! The machine that creates the department keeps its key, and issues a certificate with a key to each rig and each watcher, in one file
-//! that is carried to them. All files are readable by their owner alone.
+//! The machine that creates the department keeps its key, and issues a certificate with a key to each rig and each
+//! watcher, in one file that is carried to them. All files are readable only by their owner.
 
 use std::{
     fs,
@@ -19,18 +19,17 @@ use crate::{DepartmentError, keys::checked_name};
 const AUTHORITY: &str = "department.toml";
 const OWN: &str = "own.toml";
 
-/// What a machine may do.
+/// Role of a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// Show what it does, and watch others.
+    /// Publishes its own state, and may watch others.
     Rig,
-    /// Watch only.
+    /// May only watch.
     Watcher,
 }
 
 impl Role {
-    /// Its name.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Rig => "rig",
@@ -39,23 +38,19 @@ impl Role {
     }
 }
 
-/// What issues the certificates of a department.
+/// Issues the certificates of a department.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Authority {
-    /// Name of the department.
     pub department: String,
     certificate: String,
     key: String,
 }
 
-/// Who a machine is in its department.
+/// Identity of a machine in its department.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Identity {
-    /// Name of the department.
     pub department: String,
-    /// Name of the machine.
     pub name: String,
-    /// What it may do.
     pub role: Role,
     pub(crate) authority: String,
     pub(crate) certificate: String,
@@ -80,7 +75,7 @@ impl Authority {
     /// Creates a department in this folder.
     ///
     /// # Errors
-    /// [`DepartmentError`] if the name cannot be used, there is one already, or the file cannot be written.
+    /// [`DepartmentError`] if the name cannot be used, a department exists already, or the file cannot be written.
     pub fn create(folder: &Path, department: &str) -> Result<Self, DepartmentError> {
         let department = checked_name(department)?;
         let key = KeyPair::generate()?;
@@ -90,7 +85,7 @@ impl Authority {
         Ok(authority)
     }
 
-    /// The department that was created in this folder.
+    /// Loads the department that was created in this folder.
     ///
     /// # Errors
     /// [`DepartmentError`] if there is none.
@@ -101,7 +96,7 @@ impl Authority {
         )
     }
 
-    /// Makes a certificate for a machine, and writes it into a new file, which is to be carried there.
+    /// Issues a certificate for a machine and writes it into a new file, which must be carried there.
     ///
     /// # Errors
     /// [`DepartmentError`] if the name cannot be used, or the file cannot be written.
@@ -110,13 +105,13 @@ impl Authority {
         let params = params_of_authority(&self.department)?;
         let issuer = Issuer::new(params, KeyPair::from_pem(&self.key)?);
         let key = KeyPair::generate()?;
-        // Not checked by name: a rig is found by its address, whatever that is.
+        // The name is not checked: a rig is found by its address, which may be any.
         let mut params = CertificateParams::new(vec![name.clone()])?;
         params.distinguished_name.push(DnType::CommonName, name.clone());
         params.key_usages = vec![KeyUsagePurpose::DigitalSignature];
         params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ClientAuth];
         if role == Role::Rig {
-            // Without it nobody takes its answer for that of a rig.
+            // Required for its answer to be accepted as a rig's.
             params.extended_key_usages.push(ExtendedKeyUsagePurpose::ServerAuth);
         }
         let certificate = params.signed_by(&key, &issuer)?;
@@ -131,10 +126,10 @@ impl Authority {
 }
 
 impl Identity {
-    /// Takes the file that was issued for this machine into its folder.
+    /// Installs the file that was issued for this machine into its folder.
     ///
     /// # Errors
-    /// [`DepartmentError`] if it is no such file, or this machine belongs to a department already.
+    /// [`DepartmentError`] if it is not such a file, or this machine belongs to a department already.
     pub fn join(folder: &Path, issued: &Path) -> Result<Self, DepartmentError> {
         let identity: Self = read(issued, "name the file that `nima department issue` wrote")?;
         checked_name(&identity.name)?;
@@ -143,7 +138,7 @@ impl Identity {
         Ok(identity)
     }
 
-    /// Who this machine is.
+    /// Loads the identity of this machine.
     ///
     /// # Errors
     /// [`DepartmentError`] if it has not joined a department.
@@ -151,10 +146,10 @@ impl Identity {
         read(&folder.join(OWN), "let the department issue a certificate and use `nima department join FILE`")
     }
 
-    /// This machine, if it may be shared.
+    /// Returns this machine, if it may be shared.
     ///
     /// # Errors
-    /// [`DepartmentError::Role`] if it may watch only.
+    /// [`DepartmentError::Role`] if it may only watch.
     pub fn as_rig(&self) -> Result<&Self, DepartmentError> {
         match self.role {
             Role::Rig => Ok(self),
@@ -180,7 +175,7 @@ fn read<T: DeserializeOwned>(path: &Path, cure: &'static str) -> Result<T, Depar
     }
 }
 
-/// Writes a new file that its owner alone can read.
+/// Writes a new file that only its owner can read.
 fn write(path: &Path, value: &impl Serialize) -> Result<(), DepartmentError> {
     if path.exists() {
         return Err(DepartmentError::Exists(path.to_owned()));

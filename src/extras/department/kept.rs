@@ -1,4 +1,4 @@
-//! The last minutes of a session, for those who come late or have missed something.
+//! The last minutes of a session, for watchers that join late or have missed data.
 
 use std::{collections::VecDeque, sync::Arc};
 
@@ -6,10 +6,10 @@ use nima_session::copied::{Bundle, Head};
 
 use crate::keys::{pack, unpack};
 
-/// Bytes of bundles that are kept, compressed: about ten minutes of two arms.
+/// Maximum bytes of stored bundles, compressed: about ten minutes of two arms.
 const MOST_BYTES: usize = 64 << 20;
 
-/// A session as far as it is kept.
+/// The stored part of a session.
 #[derive(Debug)]
 pub(crate) struct Kept {
     head: Head,
@@ -19,7 +19,7 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    /// At the beginning of a session.
+    /// The beginning of a session.
     pub(crate) const fn new(head: Head) -> Self {
         Self { head, bundles: VecDeque::new(), bytes: 0, most_bytes: MOST_BYTES }
     }
@@ -29,7 +29,7 @@ impl Kept {
         Self { head, bundles: VecDeque::new(), bytes: 0, most_bytes }
     }
 
-    /// Adds the next bundle; its compressed bytes.
+    /// Adds the next bundle; returns its compressed bytes.
     pub(crate) fn add(&mut self, bundle: &Bundle) -> Arc<[u8]> {
         let packed: Arc<[u8]> = pack(&bundle.pack()).into();
         self.bytes += packed.len();
@@ -45,17 +45,16 @@ impl Kept {
         packed
     }
 
-    /// What is needed to begin with the oldest bundle that is kept.
+    /// Returns the head needed to begin with the oldest stored bundle.
     pub(crate) fn head(&self) -> Vec<u8> {
         pack(&self.head.pack())
     }
 
-    /// Its number, and the session's.
     pub(crate) fn session(&self) -> u64 {
         self.head.session
     }
 
-    /// The bundles from this one on, with their numbers, about so many bytes of them but at least one.
+    /// Returns the bundles from this one on, with their numbers: about this many bytes, but at least one bundle.
     pub(crate) fn from(&self, number: u64, most_bytes: usize) -> Vec<(u64, Arc<[u8]>)> {
         let Some(skipped) = number.checked_sub(self.head.first) else { return Vec::new() };
         let skipped = usize::try_from(skipped).unwrap_or(usize::MAX);

@@ -1,36 +1,36 @@
-//! The names under which a rig publishes, and how its messages are packed.
+//! The keys under which a rig publishes, and the packing of its messages.
 
 use crate::DepartmentError;
 
-/// Of every rig.
+/// All keys.
 pub(crate) const ALL: &str = "nima/**";
-/// Longest message that is unpacked, bytes.
+/// Maximum size of a message that is unpacked, bytes.
 const MOST_BYTES: usize = 64 << 20;
 
-/// Whether the rig is there.
+/// Presence of the rig.
 pub(crate) fn presence(rig: &str) -> String {
     format!("nima/rig/{rig}")
 }
 
-/// Of every rig; see [`presence`].
+/// Presence of every rig; see [`presence`].
 pub(crate) const PRESENCES: &str = "nima/rig/*";
 
-/// The name in a key that [`presence`] made.
+/// Returns the name in a key of [`presence`].
 pub(crate) fn rig_of(presence: &str) -> Option<&str> {
     presence.strip_prefix("nima/rig/").filter(|name| !name.contains('/'))
 }
 
-/// What it is and what it runs.
+/// Description of the rig and its running session.
 pub(crate) fn about(rig: &str) -> String {
     format!("nima/about/{rig}")
 }
 
-/// What its screen shows now.
+/// Current content of its screen.
 pub(crate) fn moments(rig: &str) -> String {
     format!("nima/moments/{rig}")
 }
 
-/// The beginning of its session, as far as it is not in the bundles that are left.
+/// The beginning of its session that is no longer in the stored bundles.
 pub(crate) fn head(rig: &str) -> String {
     format!("nima/head/{rig}")
 }
@@ -40,34 +40,33 @@ pub(crate) fn bundle(rig: &str, number: u64) -> String {
     format!("nima/session/{rig}/{number}")
 }
 
-/// All of them; see [`bundle`].
+/// All bundles; see [`bundle`].
 pub(crate) fn bundles(rig: &str) -> String {
     format!("nima/session/{rig}/*")
 }
 
-/// Who watches it.
+/// Presence of a watcher.
 pub(crate) fn watcher(rig: &str, watcher: &str) -> String {
     format!("nima/watcher/{rig}/{watcher}")
 }
 
-/// All of them; see [`watcher`].
+/// All watchers; see [`watcher`].
 pub(crate) fn watchers(rig: &str) -> String {
     format!("nima/watcher/{rig}/*")
 }
 
-/// The name, if it can be part of a key and of a file's name.
+/// Returns the name if it can be part of a key and of a file's name.
 pub(crate) fn checked_name(name: &str) -> Result<String, DepartmentError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
     let fits = (1..=40).contains(&name.len()) && name.chars().all(plain);
     if fits { Ok(name.to_owned()) } else { Err(DepartmentError::Name(name.escape_debug().take(60).collect())) }
 }
 
-/// Compresses a message.
 pub(crate) fn pack(message: &[u8]) -> Vec<u8> {
     lz4_flex::block::compress_prepend_size(message)
 }
 
-/// What [`pack`] compressed; `None` if it is damaged.
+/// Decompresses a message of [`pack`]; `None` if it is damaged.
 pub(crate) fn unpack(packed: &[u8]) -> Option<Vec<u8>> {
     let size = u32::from_le_bytes(packed.get(..4)?.try_into().ok()?);
     let fits = usize::try_from(size).is_ok_and(|size| size <= MOST_BYTES);

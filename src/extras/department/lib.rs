@@ -1,20 +1,20 @@
-//! The rigs of a department: who they are, who may watch them, and what they show.
+//! The rigs of a department: their identities, their watchers, and their published data.
 //!
-//! Everything that is not the stream of the loop: finding rigs, any number of screens that only show, and recordings on another machine.
-//! The transport is zenoh over TLS with a certificate on both sides. A rig listens and publishes; who watches can subscribe and ask, and
-//! nothing else, so that nothing from outside reaches the loop. All of it runs on the recorder's thread and on zenoh's; what they cannot
-//! send in time is dropped.
+//! Everything other than the stream of the loop: finding rigs, any number of display-only screens, and recordings on
+//! another machine. The transport is zenoh over TLS with a certificate on both sides. A rig listens and publishes; a
+//! watcher can only subscribe and query, so that nothing from outside reaches the loop. All of it runs on the
+//! recorder's thread and on zenoh's; data that they cannot send in time are dropped.
 //!
 //! | module | holds |
 //! |---|---|
 //! | `identity` | certificates: the department, its rigs and its watchers |
-//! | `config` | what zenoh may do at each end |
+//! | `config` | zenoh's configuration and permissions at each end |
 //! | `keys` | the names under which a rig publishes |
-//! | `feed` | what a rig publishes, from its recorder |
-//! | `kept` | the last minutes of its session, for those who come late |
-//! | `share` | the rig's end |
-//! | `watch` | the other end: finding rigs, their screens |
-//! | `record` | a rig's session in a file elsewhere |
+//! | `feed` | published data, from the rig's recorder |
+//! | `kept` | the last minutes of its session, for watchers that join late |
+//! | `share` | publishing side, on the rig |
+//! | `watch` | receiving side: discovery of rigs, their screens |
+//! | `record` | records a rig's session on another machine |
 #![cfg(feature = "engine")]
 
 mod config;

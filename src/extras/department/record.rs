@@ -1,4 +1,4 @@
-//! A rig's session in a file on this machine, while it happens.
+//! Records a rig's session into a file on this machine while it runs.
 
 use std::{
     path::{Path, PathBuf},
@@ -14,28 +14,26 @@ use zenoh::{Wait as _, pubsub::Subscriber};
 
 use crate::{DepartmentError, Rig, keys};
 
-/// How long is waited for a bundle before it is asked for.
+/// How long to wait for a bundle before it is requested.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// How long a query for bundles may take.
+/// Timeout of a query for bundles.
 const ANSWER: Duration = Duration::from_secs(5);
 
-/// What a step brought.
+/// Result of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Nothing new: the rig runs no loop, or is silent.
+    /// Nothing new: the rig is not running a loop, or is silent.
     Waits,
     /// A session is being written.
     Writes {
-        /// Its file.
         file: PathBuf,
         /// Bytes in it.
         bytes: u64,
     },
-    /// A session has ended, and its file with it.
+    /// A session has ended, and so has its file.
     Ended {
-        /// Its file.
         file: PathBuf,
-        /// Messages in it.
+        /// Number of messages in it.
         messages: u64,
     },
 }
@@ -59,10 +57,10 @@ struct Open {
 }
 
 impl<'a> Recording<'a> {
-    /// Begins with the session that runs now, from its beginning if the rig still has it.
+    /// Begins with the running session, from its beginning if the rig still has it.
     ///
     /// # Errors
-    /// [`DepartmentError`] if the rig cannot be asked or there is no such folder.
+    /// [`DepartmentError`] if the rig cannot be queried or the folder does not exist.
     pub fn start(rig: &'a Rig, folder: &Path) -> Result<Self, DepartmentError> {
         std::fs::create_dir_all(folder).map_err(DepartmentError::of_file(folder))?;
         let (to, came) = unbounded();
@@ -73,7 +71,7 @@ impl<'a> Recording<'a> {
         Ok(Self { rig, folder, came, file: None, over: None, asked: None, _subscriber: subscriber })
     }
 
-    /// Waits for what comes next, at most for this time, and writes it.
+    /// Waits for the next data, at most this long, and writes them.
     ///
     /// # Errors
     /// [`DepartmentError`] if the file cannot be written, or the rig runs another version.
@@ -89,7 +87,7 @@ impl<'a> Recording<'a> {
         };
         match (bundle, &self.file) {
             (Some(bundle), Some(open)) if bundle.session == open.session => self.take(&bundle),
-            // Another session has begun; the end of this one was not heard, or is still there to be asked for.
+            // Another session has begun; the end of this one was missed, or can still be requested.
             (Some(_), Some(_)) => {
                 self.catch_up()?;
                 self.end()
@@ -151,7 +149,7 @@ impl<'a> Recording<'a> {
 
     fn take(&mut self, bundle: &Bundle) -> Result<Step, DepartmentError> {
         let Some(open) = &mut self.file else { return Ok(Step::Waits) };
-        // Those that were asked for come a second time.
+        // Requested bundles arrive a second time.
         if bundle.session != open.session || bundle.number < open.copy.due() {
             return Ok(self.told());
         }
@@ -162,7 +160,8 @@ impl<'a> Recording<'a> {
         if bundle.closes { self.end() } else { Ok(self.told()) }
     }
 
-    /// Asks for what is due, until there is nothing more. What the rig no longer has is lost: the file ends there, and another one begins.
+    /// Requests the missing bundles until there are no more. Bundles that the rig no longer has are lost: the file ends
+    /// there, and another one begins.
     fn catch_up(&mut self) -> Result<Step, DepartmentError> {
         loop {
             let Some(open) = &self.file else { return Ok(Step::Waits) };
@@ -194,12 +193,12 @@ impl<'a> Recording<'a> {
 
     fn lose(&mut self) -> Result<Step, DepartmentError> {
         let ended = self.end()?;
-        // The session may go on: what comes is a stretch of it in a file of its own.
+        // The session may continue: the following data become an excerpt of it in a separate file.
         self.over = None;
         Ok(ended)
     }
 
-    /// The bundles from this one on that come in one answer, in order.
+    /// Returns the bundles from this one on that arrive in one answer, in order.
     fn ask_from(&self, number: u64) -> Result<Vec<Bundle>, DepartmentError> {
         let key = format!("{}?from={number}", keys::bundles(&self.rig.name));
         let replies =

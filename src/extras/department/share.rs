@@ -1,4 +1,4 @@
-//! The rig's end: a thread that publishes what the recorder tells, and answers those who come late.
+//! The rig's end: a thread that publishes the recorder's data, and answers late watchers.
 
 use std::{
     fmt,
@@ -31,11 +31,11 @@ use crate::{
     watch::About,
 };
 
-/// What waits for the thread that publishes, at most: some seconds.
+/// Maximum backlog of the publishing thread: some seconds.
 const BACKLOG: usize = 256;
-/// How often the thread looks whether it is to end.
+/// Interval at which the thread checks whether to end.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// Bytes of bundles in one answer, about.
+/// Approximate bytes of bundles in one answer.
 const ANSWER_BYTES: usize = 512 << 10;
 
 /// A rig that is shared with its department until this is dropped, for one session after the other.
@@ -48,7 +48,7 @@ pub struct Share {
     watchers: Arc<AtomicU64>,
     ends: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    /// What zenoh offers; it ends with them.
+    /// Dropped to withdraw the rig's declarations from zenoh.
     _offers: Offers,
 }
 
@@ -58,7 +58,7 @@ struct Offers {
     _watchers: zenoh::pubsub::Subscriber<()>,
 }
 
-/// What late-comers are told.
+/// The state sent to late watchers.
 #[derive(Debug)]
 struct State {
     about: About,
@@ -75,7 +75,7 @@ impl Share {
         let scouting = if scouting { Scouting::Answers } else { Scouting::Silent };
         let refused =
             |why: &dyn fmt::Display| DepartmentError::Listen { address: address.to_string(), why: why.to_string() };
-        // Zenoh tells neither a port that is in use nor a free one that it took.
+        // Zenoh reports neither a port that is in use nor the free port that it selected.
         let address = free(address).map_err(|error| refused(&error))?;
         let session = zenoh::open(config::rig(own, &address.to_string(), scouting)?).wait();
         let session = session.map_err(|error| refused(&error))?;
@@ -103,27 +103,25 @@ impl Share {
         })
     }
 
-    /// Where it listens.
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Name of the rig.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Watchers that are connected now.
+    /// Number of connected watchers.
     pub fn watchers(&self) -> usize {
         usize::try_from(self.watchers.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
     }
 
-    /// What could not be published in time.
+    /// Number of entries that could not be published in time.
     pub fn dropped(&self) -> u64 {
         self.dropped.load(Ordering::Relaxed)
     }
 
-    /// For the recorder of the next session.
+    /// Returns the audience for the recorder of the next session.
     pub fn audience(&self) -> Box<dyn Audience> {
         Box::new(Feed::new(self.to.clone(), Arc::clone(&self.dropped)))
     }
@@ -145,7 +143,7 @@ impl fmt::Debug for Share {
     }
 }
 
-/// The address, with a port that is free if none is named.
+/// Returns the address, with a free port if none is given.
 fn free(address: SocketAddr) -> std::io::Result<SocketAddr> {
     std::net::TcpListener::bind(address)?.local_addr()
 }
@@ -178,7 +176,7 @@ fn offer(session: &Session, name: &str, state: &Arc<Mutex<State>>, watchers: &Ar
     Ok(Offers { _presence: presence, _answers: answers, _watchers: watchers })
 }
 
-/// Answers, on zenoh's thread for this watcher: who does not take it makes nobody else wait.
+/// Answers on zenoh's thread for this watcher: a slow reader delays no other.
 fn reply(query: &Query, key: String, payload: Vec<u8>) {
     let Ok(key) = KeyExpr::try_from(key) else { return };
     query.reply(key, payload).wait().ok();
@@ -204,7 +202,7 @@ fn answer_bundles(query: &Query, name: &str, state: &Mutex<State>) {
     }
 }
 
-/// The thread that publishes.
+/// Publishes until the end.
 fn publish(session: &Session, name: &str, state: &Mutex<State>, told: &Receiver<Told>, ends: &AtomicBool) {
     let put = |key: String, payload: Vec<u8>, priority| {
         session.put(key, payload).congestion_control(CongestionControl::Drop).priority(priority).wait().ok();
@@ -212,7 +210,7 @@ fn publish(session: &Session, name: &str, state: &Mutex<State>, told: &Receiver<
     loop {
         let next = match told.recv_timeout(LOOK_EVERY) {
             Ok(next) => next,
-            // A recorder may tell on when nobody is to hear it any more.
+            // A recorder may keep sending although no watcher is left.
             Err(_) if ends.load(Ordering::Relaxed) => return,
             Err(_) => continue,
         };
@@ -225,7 +223,7 @@ fn publish(session: &Session, name: &str, state: &Mutex<State>, told: &Receiver<
             Told::File(file, text) => locked(state).about.file(&file, text),
             Told::Bundle(bundle) => {
                 let mut state = locked(state);
-                // The end of a session that another one has followed already.
+                // The end of a session that has already been followed by another one.
                 let Some(kept) = state.kept.as_mut().filter(|kept| kept.session() == bundle.session) else { continue };
                 let packed = kept.add(&bundle).to_vec();
                 if bundle.closes {

@@ -1,4 +1,4 @@
-//! A rig and those who watch it, over TLS on loopback.
+//! A rig and its watchers, over TLS on loopback.
 
 use std::{
     io::{Read as _, Write as _},
@@ -30,10 +30,9 @@ use zenoh::Wait as _;
 use super::*;
 use crate::keys;
 
-/// Far longer than anything takes, also on a busy machine.
+/// Far longer than any step, even on a busy machine.
 const PATIENCE: Duration = Duration::from_mins(2);
 
-/// A department with a rig and a watcher.
 struct Department {
     folder: tempfile::TempDir,
     rig: Identity,
@@ -55,7 +54,7 @@ impl Department {
     }
 }
 
-/// A loop that runs and is recorded into a file and for these.
+/// A running loop that is recorded into a file and for these audiences.
 struct Running {
     handle: Option<Handle>,
     recorder: Option<Recorder>,
@@ -193,7 +192,7 @@ fn strangers_and_those_without_a_certificate_are_refused() {
         Share::start(&ours.watcher, "127.0.0.1:0".parse().unwrap(), false),
         Err(DepartmentError::Role { .. })
     ));
-    // A watcher that says it is a rig has a certificate that says otherwise.
+    // A watcher that claims to be a rig has a certificate that says otherwise.
     let poser = Identity { role: Role::Rig, ..ours.watcher.clone() };
     let posed = Share::start(&poser, "127.0.0.1:0".parse().unwrap(), false).unwrap();
     assert!(Rig::open(&ours.watcher, &address(&posed)).is_err());
@@ -225,7 +224,7 @@ fn who_watches_can_neither_publish_nor_pose_as_a_rig() {
     drop((false_rig, answers, watching));
 }
 
-/// Passes bytes on between whoever connects and this address, at most so many in a second from there.
+/// Forwards bytes between a client and this address, at a limited rate from there.
 fn slow_way(to: SocketAddr, bytes_s: usize) -> SocketAddr {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
@@ -257,7 +256,7 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     let department = Department::new("lab");
     let share = department.share();
     let running = Running::start(&department.folder.path().join("session.mcap"), &share);
-    // Fast until it watches, so that it gets that far.
+    // Fast until it watches, so that it connects at all.
     let slow = slow_way(share.address(), 20_000);
     let slow = Rig::open(&department.watcher, &slow.to_string()).unwrap();
     let of_slow = slow.watch(|_, _| ()).unwrap();
@@ -281,7 +280,8 @@ fn a_screen_that_is_too_slow_makes_nobody_wait() {
     drop((of_slow, watching));
 }
 
-/// Lateness and work of the loop alone and with ten watchers, one of which reads 1 kB in a second; in turns, because the machine changes.
+/// Lateness and work of the loop alone and with ten watchers, one of which reads 1 kB per second; in turns, because the
+/// load of the machine changes.
 #[test]
 #[ignore = "a minute and a half; printed, not judged"]
 fn figures_of_ten_watchers() {
@@ -293,7 +293,7 @@ fn figures_of_ten_watchers() {
             let running = Running::start(&session, &share);
             let slow = slow_way(share.address(), 1000).to_string();
             let of = |number: usize| if number == 0 { slow.clone() } else { address(&share) };
-            // The slow one may not even get through the handshake.
+            // The slow one may not even complete the handshake.
             let rigs: Vec<Rig> =
                 (0..count).filter_map(|number| Rig::open(&department.watcher, &of(number)).ok()).collect();
             let watching: Vec<_> = rigs.iter().map(|rig| rig.watch(|_, _| ()).unwrap()).collect();

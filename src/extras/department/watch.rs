@@ -1,4 +1,4 @@
-//! The other end: rigs are found, and their screens shown.
+//! The watcher's end: finds rigs and shows their screens.
 
 use std::{
     fmt,
@@ -17,13 +17,12 @@ use zenoh::{Session, Wait as _, bytes::ZBytes, liveliness::LivelinessToken, pubs
 
 use crate::{DepartmentError, Identity, config, keys};
 
-/// How long a rig has to answer.
+/// Timeout for a rig's answer.
 const ANSWER: Duration = Duration::from_secs(3);
 
-/// What a rig is and what it runs.
+/// Description of a rig and its running session.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct About {
-    /// Its department.
     #[prost(string, tag = "1")]
     pub department: String,
     /// Its name there.
@@ -32,10 +31,10 @@ pub struct About {
     /// Name and version of its program; empty before the first session.
     #[prost(string, tag = "3")]
     pub program: String,
-    /// Which session of it runs; 0 if none does.
+    /// Identifies its running session; 0 if there is none.
     #[prost(uint64, tag = "4")]
     pub session: u64,
-    /// When that began, ns since 1970 (UTC).
+    /// Start of the session, ns since 1970 (UTC).
     #[prost(fixed64, tag = "5")]
     pub started_ns: u64,
     /// Its rig file.
@@ -73,21 +72,20 @@ impl About {
     }
 }
 
-/// A rig that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Where: the first of its addresses that answered.
+    /// The first of its addresses that answered.
     pub address: String,
-    /// What it is and what it runs.
+    /// Its description.
     pub about: About,
-    /// How many watch it.
+    /// Number of its watchers.
     pub watchers: usize,
 }
 
-/// The rigs of this department that answer in the local network within this time, by name.
+/// Finds the rigs of this department that answer in the local network within this time, sorted by name.
 ///
 /// # Errors
-/// [`DepartmentError`] if nothing can be sent into it.
+/// [`DepartmentError`] if the network cannot be used.
 pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentError> {
     let unsent =
         |why: zenoh::Error| DepartmentError::Connect { address: "any address".to_owned(), why: why.to_string() };
@@ -102,7 +100,7 @@ pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentErro
     hellos.dedup_by_key(|hello| hello.zid().to_string());
     let at = |hello: &zenoh::scouting::Hello| {
         let addresses = hello.locators().iter().filter_map(|at| at.as_str().strip_prefix("tls/").map(str::to_owned));
-        // Others may answer too: rigs of another department, programs that are no rigs.
+        // Others may answer too: rigs of another department, and programs that are not rigs.
         addresses.into_iter().find_map(|address| find_at(own, &address).ok())
     };
     let mut found: Vec<Found> = hellos.iter().filter_map(at).collect();
@@ -110,21 +108,20 @@ pub fn find(own: &Identity, wait: Duration) -> Result<Vec<Found>, DepartmentErro
     Ok(found)
 }
 
-/// The rig at this address.
+/// Returns the rig at this address.
 ///
 /// # Errors
-/// [`DepartmentError`] if none of this department answers there.
+/// [`DepartmentError`] if no rig of this department answers there.
 pub fn find_at(own: &Identity, address: &str) -> Result<Found, DepartmentError> {
     let rig = Rig::connect(own, address)?;
     Ok(Found { address: address.to_owned(), about: rig.about()?, watchers: rig.watchers() })
 }
 
-/// A rig at another machine.
 pub struct Rig {
     pub(crate) session: Session,
     pub(crate) name: String,
     address: String,
-    /// Tells the rig that somebody watches.
+    /// Announces the watcher to the rig.
     token: Option<LivelinessToken>,
 }
 
@@ -132,7 +129,7 @@ impl Rig {
     /// Connects to the rig at this address (`HOST:PORT`), to watch it.
     ///
     /// # Errors
-    /// [`DepartmentError`] if none of this department answers there.
+    /// [`DepartmentError`] if no rig of this department answers there.
     pub fn open(own: &Identity, address: &str) -> Result<Self, DepartmentError> {
         let mut rig = Self::connect(own, address)?;
         let key = keys::watcher(&rig.name, &format!("{}-{}", own.name, rig.session.zid()));
@@ -153,17 +150,15 @@ impl Rig {
         Ok(Self { session, name, address: address.to_owned(), token: None })
     }
 
-    /// Its name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Where it is.
     pub fn address(&self) -> &str {
         &self.address
     }
 
-    /// What it is and what it runs.
+    /// Returns its description.
     ///
     /// # Errors
     /// [`DepartmentError`] if it does not answer.
@@ -177,7 +172,6 @@ impl Rig {
         DepartmentError::Silent { rig: self.name.clone(), why: why.to_owned() }
     }
 
-    /// The first answer.
     pub(crate) fn ask(&self, key: &str) -> Result<Option<ZBytes>, DepartmentError> {
         let replies = self.session.get(key).timeout(ANSWER).wait().map_err(|error| self.silent(&error.to_string()))?;
         Ok(replies.into_iter().find_map(|reply| Some(reply.into_result().ok()?.payload().clone())))
@@ -188,11 +182,11 @@ impl Rig {
         replies.map_or(0, |replies| replies.into_iter().filter(|reply| reply.result().is_ok()).count())
     }
 
-    /// Calls `each` with what its screen shows, from now on and as long as the answer is kept; it must not wait for anything. The number
-    /// is the session's, as in [`About`].
+    /// Calls `each` with the content of its screen, until the returned value is dropped; `each` must not block. The
+    /// number identifies the session, as in [`About`].
     ///
     /// # Errors
-    /// [`DepartmentError`] if the rig cannot be asked.
+    /// [`DepartmentError`] if the rig cannot be queried.
     pub fn watch(
         &self,
         each: impl Fn(u64, Result<Vec<Moment>, WatchError>) + Send + Sync + 'static,
@@ -210,10 +204,10 @@ impl Rig {
         Ok(Watching(watching.map_err(|error| self.silent(&error.to_string()))?))
     }
 
-    /// Whether it is there: false as soon as it is not, or can no longer be reached.
+    /// Monitors whether it is reachable.
     ///
     /// # Errors
-    /// [`DepartmentError`] if that cannot be watched.
+    /// [`DepartmentError`] if this cannot be monitored.
     pub fn presence(&self) -> Result<Presence, DepartmentError> {
         let there = Arc::new(AtomicU64::new(1));
         let told = Arc::clone(&there);
@@ -238,11 +232,11 @@ impl fmt::Debug for Rig {
     }
 }
 
-/// As long as this is kept, a rig is watched.
+/// A rig is watched while this exists.
 #[derive(Debug)]
 pub struct Watching(#[expect(dead_code, reason = "its drop ends it")] Subscriber<()>);
 
-/// Whether a rig is there.
+/// Whether a rig is reachable.
 #[derive(Debug)]
 pub struct Presence {
     there: Arc<AtomicU64>,
@@ -250,7 +244,6 @@ pub struct Presence {
 }
 
 impl Presence {
-    /// Whether it is.
     pub fn is_there(&self) -> bool {
         self.there.load(Ordering::Relaxed) != 0
     }

@@ -1,8 +1,8 @@
-//! Watching a session while it happens: a server that sends the channels and messages of its file to Foxglove and `PlotJuggler`.
+//! Live viewing of a session: a server that sends the channels and messages of its file to Foxglove and `PlotJuggler`.
 //!
-//! The protocol is Foxglove's over WebSocket (subprotocols `foxglove.sdk.v1` and `v1.1`), from their library. It runs on threads of
-//! its own. Who watches cannot act: the server offers nothing but channels. A viewer that is too slow loses the oldest messages; neither
-//! the loop nor the recording waits for it.
+//! The protocol is Foxglove's over WebSocket (subprotocols `foxglove.sdk.v1` and `v1.1`), from Foxglove's library. It
+//! runs on its own threads. Viewers cannot act: the server only offers channels. A viewer that is too slow loses the
+//! oldest messages; neither the loop nor the recording waits for it.
 #![cfg(feature = "engine")]
 
 use std::{
@@ -15,22 +15,17 @@ use foxglove::{ChannelBuilder, Context, FoxgloveError, PartialMetadata, RawChann
 use nima_recording::session::Encoding;
 use nima_session::{outlet::Audience, recorder::JOURNAL_TOPIC};
 
-/// Messages that wait for a viewer, at most: more than two seconds of two arms, which give 6 100 in a second.
+/// Maximum number of messages waiting for a viewer: more than two seconds of two arms, which send 6 100 per second.
 const BACKLOG: usize = 16_384;
 
-/// Why nobody can watch.
+/// Why the server cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum LiveError {
     /// The address cannot be used.
     #[error(
-        "live viewing: cannot listen at {address}: {reason}; end the program that uses this port, or name another one"
+        "live viewing: cannot listen at {address}: {reason}; end the program that uses this port, or choose another port"
     )]
-    Listen {
-        /// The address.
-        address: SocketAddr,
-        /// Why.
-        reason: String,
-    },
+    Listen { address: SocketAddr, reason: String },
 }
 
 /// A server that runs until it is dropped, for one session after the other.
@@ -41,7 +36,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens at this address; with port 0 at any free port. `program` is the name that viewers show.
+    /// Listens at this address; port 0 selects a free one. `program` is the name that viewers show.
     ///
     /// # Errors
     /// [`LiveError`] if the address is not this computer's or the port is in use.
@@ -60,23 +55,22 @@ impl Server {
         Ok(Self { context, handle: Some(handle), address })
     }
 
-    /// Where it listens.
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Viewers that are connected now.
+    /// Number of connected viewers.
     pub fn viewers(&self) -> usize {
         self.handle.as_ref().map_or(0, WebSocketServerHandle::client_count)
     }
 
-    /// For the recorder of the next session. When it is dropped, the viewers lose its channels.
+    /// Returns the audience for the recorder of the next session. When it is dropped, the viewers lose its channels.
     pub fn audience(&self) -> Box<dyn Audience> {
         Box::new(Viewers { context: Arc::clone(&self.context), channels: Vec::new() })
     }
 }
 
-/// As the library wants it.
+/// The library's form of an address.
 fn host(ip: IpAddr) -> String {
     match ip {
         IpAddr::V4(ip) => ip.to_string(),
@@ -108,7 +102,7 @@ impl fmt::Debug for Server {
 /// The channels of one session.
 struct Viewers {
     context: Arc<Context>,
-    /// By number; `None` where the library refuses one, and for the journal, which no viewer can read.
+    /// By number; `None` if the library refuses a channel, and for the journal, which viewers cannot read.
     channels: Vec<Option<Arc<RawChannel>>>,
 }
 

@@ -7,7 +7,7 @@ use tungstenite::{ClientRequestBuilder, Message, WebSocket, connect, stream::May
 
 use super::*;
 
-/// Most messages that are read before one that is expected.
+/// Maximum number of messages read before the expected one.
 const READ_MAX: usize = 100;
 
 struct Viewer(WebSocket<MaybeTlsStream<TcpStream>>);
@@ -22,7 +22,7 @@ impl Viewer {
         Self(socket)
     }
 
-    /// The next message of this kind.
+    /// Returns the next message of this kind.
     fn told(&mut self, op: &str) -> Value {
         for _ in 0..READ_MAX {
             if let Message::Text(text) = self.0.read().unwrap() {
@@ -35,7 +35,7 @@ impl Viewer {
         panic!("no {op}");
     }
 
-    /// Channels until all of these topics are there.
+    /// Returns channels until all of these topics are present.
     fn channels(&mut self, topics: &[&str]) -> Vec<Value> {
         let mut channels = Vec::new();
         while !topics.iter().all(|topic| channels.iter().any(|channel: &Value| channel["topic"] == *topic)) {
@@ -49,7 +49,7 @@ impl Viewer {
         self.0.send(Message::text(wish.to_string())).unwrap();
     }
 
-    /// Subscription, time (ns) and bytes of the next message.
+    /// Returns subscription, time (ns) and bytes of the next message.
     fn message(&mut self) -> (u32, u64, Vec<u8>) {
         for _ in 0..READ_MAX {
             if let Message::Binary(bytes) = self.0.read().unwrap() {
@@ -76,7 +76,7 @@ fn at_any_port() -> Server {
     Server::start("127.0.0.1:0".parse().unwrap(), "nima test").unwrap()
 }
 
-/// Sends the message again and again until the viewer has it: a subscription takes a moment.
+/// Sends the message repeatedly until the viewer has it: a subscription takes a moment.
 fn seen(audience: &mut dyn Audience, channel: usize, viewer: &mut Viewer, time_ns: u64, data: &[u8]) -> u32 {
     for _ in 0..20 {
         audience.message(channel, time_ns, data);
@@ -100,7 +100,7 @@ fn a_viewer_gets_what_it_asks_for_with_the_time_of_the_sample() {
     assert_eq!((&log["encoding"], &log["schemaName"]), (&json!("json"), &json!("Force")));
     assert_eq!((&log["schemaEncoding"], &log["schema"]), (&json!("jsonschema"), &json!("{\"type\": \"object\"}")));
     viewer.subscribe(7, log);
-    // The other channel is not asked for.
+    // The other channel was not requested.
     audience.message(0, 1, b"{}");
     assert_eq!(seen(&mut *audience, 1, &mut viewer, 1_700_000_000_123_456_789, b"{\"message\": \"here\"}"), 7);
     assert_eq!(server.viewers(), 1);
@@ -132,7 +132,7 @@ fn a_viewer_that_reads_nothing_holds_up_nobody() {
     let log = viewer.channels(&["log"]).pop().unwrap();
     viewer.subscribe(1, &log);
     seen(&mut *audience, 0, &mut viewer, 1, b"first");
-    // Far more than the system's buffers and the backlog hold.
+    // Far more than the system's buffers and the backlog can hold.
     let much = vec![0; 4096];
     for time_ns in 0..3 * BACKLOG as u64 {
         audience.message(0, time_ns, &much);
@@ -157,7 +157,7 @@ fn nobody_listens_any_more_when_the_server_has_ended() {
     let address = server.address();
     drop(server);
     audience.message(0, 1, b"to nobody");
-    // The library closes its socket on a thread of its own.
+    // The library closes its socket on its own thread.
     let closed = |_| {
         std::thread::sleep(Duration::from_millis(5));
         TcpStream::connect(address).is_err()

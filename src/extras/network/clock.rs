@@ -1,63 +1,65 @@
-//! The other machine's clock, from four time stamps.
+//! Estimates the other machine's clock from four time stamps.
 //!
-//! An [`Exchange`] gives the apparent delay of one datagram there and of one back. The offset lies between the two bounds that they
-//! set, whatever the delays are: the middle is the estimate, half the round trip its bound (Mills, RFC 5905). Of every 0.2 s only the
-//! least apparent delay of each direction is kept; a straight line through the last 20 s of them, the steadier the round trip the
-//! heavier, gives offset and skew. A step of either clock moves the two apparent delays against each other and leaves the round trip as it
-//! was; a route that becomes longer does not.
+//! An [`Exchange`] gives the apparent delay of one datagram in each direction. The offset lies between the two bounds
+//! that they set, whatever the delays are: the middle is the estimate, half the round trip its bound (Mills, RFC 5905).
+//! For every 0.2 s only the minimum apparent delay of each direction is kept; a straight line through the last 20 s of
+//! them, weighted by the stability of the round trip, gives offset and skew. A step of either clock moves the two
+//! apparent delays in opposite directions and leaves the round trip unchanged; a longer route does not.
 
-/// Least length of one window, s, and least number of exchanges in it; unless [`WINDOW_MAX_S`] is over.
+/// Minimum length of a window, s, and minimum number of exchanges in it; a window ends in any case after
+/// [`WINDOW_MAX_S`].
 const WINDOW_S: f64 = 0.2;
 const WINDOW_SAMPLES: u32 = 20;
 const WINDOW_MAX_S: f64 = 1.0;
-/// Number of windows that are kept.
+/// Number of stored windows.
 const WINDOWS: usize = 100;
-/// Fewer windows do not tell a step.
+/// Minimum number of windows for detecting a step.
 const WINDOWS_MIN: usize = 4;
-/// Least step that is told, s; half of it must be exceeded by the estimate of two windows.
+/// Minimum step that is reported, s; the estimate of two windows must exceed half of it.
 pub const STEP_MIN_S: f64 = 5e-3;
-/// A window is compared with this many before it.
+/// A window is compared with this many earlier ones.
 const REFERENCE: usize = 5;
-/// A step exceeds the usual deviation of a window this many times.
+/// A step exceeds the usual deviation of a window by this factor.
 const STEP_DEVIATIONS: f64 = 6.0;
-/// Usual deviation of a crystal's rate, as share, and of a window's estimate, s: what the skew is shrunk by.
+/// Usual deviation of a crystal's rate, as a fraction, and of a window's estimate, s; they determine how far the skew
+/// is shrunk.
 const SKEW_USUAL: f64 = 1e-4;
 const WINDOW_USUAL_S: f64 = 2e-4;
-/// A window whose round trip is longer than the least by this, s, counts half.
+/// A window whose round trip exceeds the minimum by this, s, counts half.
 const ROUND_TRIP_SCALE_S: f64 = 1e-4;
 
 /// Four time stamps, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchange {
-    /// Our datagram was sent, by our clock.
+    /// Sending of our datagram, by our clock.
     pub origin_s: f64,
-    /// It arrived, by their clock.
+    /// Its arrival, by their clock.
     pub received_s: f64,
-    /// Their datagram was sent, by their clock.
+    /// Sending of their datagram, by their clock.
     pub sent_s: f64,
-    /// It arrived, by our clock.
+    /// Its arrival, by our clock.
     pub arrived_s: f64,
 }
 
-/// What is known of their clock.
+/// Estimate of their clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Their clock minus ours, s.
     pub offset_s: f64,
-    /// The offset is wrong by this at most, s: half the least round trip.
+    /// Maximum error of the offset, s: half the minimum round trip.
     pub bound_s: f64,
-    /// Least round trip lately, s.
+    /// Minimum recent round trip, s.
     pub round_trip_s: f64,
-    /// How much faster their clock runs, as share.
+    /// Relative rate error of their clock.
     pub skew: f64,
 }
 
 /// A step of either clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// When it was found, by our clock, s.
+    /// Time of detection, by our clock, s.
     pub found_s: f64,
-    /// By how much their clock minus ours has changed, s.
+    /// Change of their clock minus ours, s.
     pub by_s: f64,
 }
 
@@ -66,7 +68,7 @@ struct Window {
     begin_s: f64,
     last_s: f64,
     samples: u32,
-    /// Least apparent delay from us to them, and back, s.
+    /// Minimum apparent delay from us to them, and back, s.
     there_s: f64,
     back_s: f64,
 }
@@ -94,7 +96,7 @@ impl Window {
     }
 }
 
-/// Offset at a moment, and how it changes.
+/// Offset at a moment, and its rate of change.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     at_s: f64,
@@ -108,14 +110,14 @@ impl Line {
     }
 }
 
-/// What a window is.
+/// Classification of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
-    /// Like those before it.
+    /// Like the previous windows.
     Usual,
-    /// Unlike them; the next one tells why.
+    /// Unlike them; the next one shows why.
     Suspect,
-    /// The way has become longer or shorter in one direction.
+    /// The route has become longer or shorter in one direction.
     OtherWay,
     /// A clock was set.
     Step(f64),
@@ -125,15 +127,15 @@ enum Verdict {
 #[derive(Clone, Debug)]
 pub struct Clock {
     windows: [Window; WINDOWS],
-    /// Number of windows that were closed since the last step.
+    /// Number of windows closed since the last step.
     closed: usize,
     open: Option<Window>,
     line: Option<Line>,
-    /// Least half round trip of the kept windows, s.
+    /// Minimum half round trip of the stored windows, s.
     half_s: f64,
     /// The windows from this one on are compared with the next.
     reference_from: usize,
-    /// By what the last window deviated, offset and half round trip, s, if it looked like a step.
+    /// Deviation of the last window, offset and half round trip, s, if it looked like a step.
     suspect: Option<(f64, f64)>,
     step: Option<Step>,
     steps: u32,
@@ -156,7 +158,7 @@ impl Default for Clock {
 }
 
 impl Clock {
-    /// Takes one exchange. Gives the step that it proved, if it did; the estimate is then that of the new clock.
+    /// Adds one exchange. Returns the step that it proved, if any; the estimate then applies to the new clock.
     pub fn add(&mut self, exchange: &Exchange) -> Option<Step> {
         let there_s = exchange.received_s - exchange.origin_s;
         let back_s = exchange.arrived_s - exchange.sent_s;
@@ -177,7 +179,7 @@ impl Clock {
         self.close(full)
     }
 
-    /// What is known; `None` before the first exchange.
+    /// Returns the estimate; `None` before the first exchange.
     pub fn estimate(&self, now_s: f64) -> Option<Estimate> {
         let Some(line) = self.line else {
             let open = self.open.as_ref()?;
@@ -193,12 +195,12 @@ impl Clock {
         Some(Estimate { offset_s: line.at(now_s), bound_s: half_s, round_trip_s: 2.0 * half_s, skew: line.skew })
     }
 
-    /// The last step, if there was one.
+    /// Returns the last step, if there was one.
     pub const fn step(&self) -> Option<Step> {
         self.step
     }
 
-    /// Number of steps found.
+    /// Number of detected steps.
     pub const fn steps(&self) -> u32 {
         self.steps
     }
@@ -210,7 +212,7 @@ impl Clock {
     fn close(&mut self, window: Window) -> Option<Step> {
         let step = match self.judge(&window) {
             Verdict::Usual => None,
-            // Neither taken nor thrown away: the next window tells.
+            // Neither accept nor discard it: the next window decides.
             Verdict::Suspect => return None,
             Verdict::OtherWay => {
                 self.reference_from = self.closed;
@@ -228,15 +230,15 @@ impl Clock {
         step
     }
 
-    /// The last windows that were taken, newest first, at most this many.
+    /// Returns the last accepted windows, newest first, at most this many.
     fn last(&self, count: usize) -> impl Iterator<Item = &Window> {
         let count = count.min(self.closed).min(WINDOWS);
         (1..=count).map(|back| &self.windows[(self.closed - back) % WINDOWS])
     }
 
-    /// Compares a window with those just before it. A longer or shorter way in one direction moves the middle by as much as half the round
-    /// trip; a step leaves the round trip as it was. A window in which it happened shows something between: only two in a row that agree
-    /// are judged.
+    /// Compares a window with the previous ones. A longer or shorter route in one direction moves the middle by as much
+    /// as half the round trip; a step leaves the round trip unchanged. A window that contains the change itself shows
+    /// an intermediate value, so only two consecutive windows that agree are judged.
     fn judge(&mut self, window: &Window) -> Verdict {
         let count = REFERENCE.min(self.closed - self.reference_from);
         if self.closed < WINDOWS_MIN || count == 0 {
@@ -245,7 +247,7 @@ impl Clock {
         let mean = |of: fn(&Window) -> f64| self.last(count).map(of).sum::<f64>() / count as f64;
         let by_s = window.offset_s() - mean(Window::offset_s);
         let longer_s = window.half_s() - mean(Window::half_s);
-        // Few windows know their own deviation badly.
+        // With few windows their deviation is uncertain.
         let deviations = STEP_DEVIATIONS * (1.0 + WINDOWS_MIN as f64 / self.closed.min(WINDOWS) as f64);
         let before = self.suspect.take();
         if by_s.abs() <= (STEP_MIN_S / 2.0).max(deviations * self.deviation_s()) {
@@ -261,7 +263,7 @@ impl Clock {
         if longer_s.abs() < 0.4 * by_s.abs() { Verdict::Step(by_s) } else { Verdict::OtherWay }
     }
 
-    /// Usual deviation of a window, s: from how much two in a row differ.
+    /// Usual deviation of a window, s, from the differences of consecutive windows.
     fn deviation_s(&self) -> f64 {
         let differences = self.last(WINDOWS).zip(self.last(WINDOWS).skip(1));
         let (sum_s, count) =
@@ -269,7 +271,7 @@ impl Clock {
         1.25 / std::f64::consts::SQRT_2 * sum_s / f64::max(count, 1.0)
     }
 
-    /// The straight line through the kept windows, with a skew that is shrunk towards none.
+    /// Fits a straight line through the stored windows, with a skew that is shrunk towards zero.
     fn fit(&mut self, now_s: f64) {
         let half_s = self.kept().iter().map(Window::half_s).fold(f64::INFINITY, f64::min);
         self.half_s = half_s;

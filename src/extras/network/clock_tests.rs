@@ -2,11 +2,11 @@ use nima_core::noise::Noise;
 
 use super::*;
 
-/// Two clocks and the way between them, simulated.
+/// Two clocks and the network between them, simulated.
 struct World {
     noise: Noise,
     clock: Clock,
-    /// Delay and jitter there and back, s.
+    /// Delay and jitter in each direction, s.
     delay_s: [f64; 2],
     jitter_s: f64,
     offset_s: f64,
@@ -26,7 +26,7 @@ impl World {
         t_s * (1.0 + self.skew) + self.offset_s
     }
 
-    /// This many seconds of exchanges at 1 kHz; the largest error of the estimate in the last second, s.
+    /// Runs this many seconds of exchanges at 1 kHz; returns the maximum error of the estimate in the last second, s.
     fn run(&mut self, length_s: f64) -> f64 {
         let end_s = self.t_s + length_s;
         let mut worst_s = 0.0_f64;

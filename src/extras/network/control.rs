@@ -1,19 +1,21 @@
-//! Who holds a follower, and its hand-over by consent: one byte in every report, and in the next datagram when it changes.
+//! Control of a follower, and its transfer by consent: one byte in every report, and in the next datagram when it
+//! changes.
 //!
-//! The byte says what is, not what has happened, so that a lost datagram changes nothing: a console asks for as long as it wants, the
-//! follower passes the question on for as long as it is open, and the holder's answer carries the question's number.
+//! The byte describes a state, not an event, so that a lost datagram changes nothing: a console repeats its request for
+//! as long as it wants, the follower forwards the request for as long as it is open, and the controller's answer
+//! carries the number of the request.
 
-/// What a console is to its follower.
+/// Status of a console for its follower.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Standing {
-    /// Not told yet.
+    /// Not received yet.
     #[default]
     Unknown,
-    /// It holds the follower: its payloads count, and it gets the follower's.
+    /// It has control of the follower: its payloads count, and it gets the follower's.
     Holds,
-    /// Another console holds it.
+    /// Another console has control.
     Waits,
-    /// Nobody holds it: it is free for the first who asks.
+    /// No console has control: the first one to ask gets it.
     Free,
 }
 
@@ -23,13 +25,12 @@ const GOODBYE: u8 = 0x80;
 /// The byte of a follower.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FromFollower {
-    /// What the console is.
+    /// Status of the console.
     pub(crate) standing: Standing,
-    /// Another console asks for control: the number of the question, 1 to 3.
+    /// Another console requests control: the number of the request, 1 to 3.
     pub(crate) asked: u8,
-    /// The holder has refused this console's question.
+    /// The controlling console has refused this console's request.
     pub(crate) is_denied: bool,
-    /// The session ends.
     pub(crate) goodbye: bool,
 }
 
@@ -58,13 +59,12 @@ impl FromFollower {
 /// The byte of a console.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FromConsole {
-    /// It asks for control.
+    /// Whether it requests control.
     pub(crate) asks: bool,
-    /// Its answer to the question with this number; 0 for none.
+    /// Its answer to the request with this number; 0 for none.
     pub(crate) answers: u8,
-    /// What it answers.
+    /// The answer.
     pub(crate) consents: bool,
-    /// The session ends.
     pub(crate) goodbye: bool,
 }
 
@@ -78,35 +78,35 @@ impl FromConsole {
     }
 }
 
-/// Why a link does not carry payloads, or not as it should.
+/// Why a link carries no payloads, or carries them imperfectly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// The other side has ended the session: its program was closed.
     PeerClosed,
-    /// Nothing has come for this long, s: the cable, the network, or a machine that stands still.
+    /// No data for this long, s: the cable, the network, or a stalled machine.
     Silent {
         /// Since the last datagram, s.
         for_s: f64,
     },
-    /// One of the two clocks was set: their clock minus ours has changed by this, s. It is told for a second.
+    /// One of the two clocks was set: their clock minus ours has changed by this, s. Reported for a second.
     ClockJumped {
         /// Change, s.
         by_s: f64,
     },
-    /// Another console holds this follower.
+    /// Another console has control of this follower.
     HeldByAnother,
-    /// Nobody holds the follower, this console neither: it was taken from it, or its holder has gone.
+    /// No console has control of the follower: it was withdrawn from this one, or the controlling console is gone.
     NotAsked,
     /// The other side refuses a session.
     Refused(Refusal),
 }
 
-/// Why no session is made.
+/// Why a session was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The other side speaks another version of the protocol: this one. Install the same version on both machines.
+    /// The other side uses this other version of the protocol. Install the same version on both machines.
     Version(u8),
-    /// The other side does not know this key, or has another one itself: pair the two machines.
+    /// The other side does not have this key, or has changed its own: pair the two machines.
     Key,
     /// Too many consoles at once.
     Full,
@@ -154,7 +154,7 @@ impl std::fmt::Display for Cause {
             }
             Self::ClockJumped { by_s } => write!(f, "a clock jumped by {:.1} ms", by_s * 1e3),
             Self::HeldByAnother => f.write_str("another console holds this follower; ask for control"),
-            Self::NotAsked => f.write_str("nobody holds this follower; ask for control"),
+            Self::NotAsked => f.write_str("no console has control of this follower; ask for control"),
             Self::Refused(refusal) => refusal.fmt(f),
         }
     }

@@ -1,39 +1,38 @@
-//! What a link measures about itself.
+//! Measurements of a link.
 
 use crate::{
     clock::Estimate,
     playout::{Counts, Delays},
 };
 
-/// What keeps the number of copies below the one that is wanted.
+/// Why there are fewer redundant copies than requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limit {
-    /// Nothing.
+    /// They are not limited.
     #[default]
     None,
-    /// The longest datagram.
+    /// The maximum size of a datagram.
     Datagram,
-    /// The limit of the rate.
+    /// The rate limit.
     Rate,
 }
 
-/// How often each payload is sent.
+/// Number of times that each payload is sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Copies {
-    /// Needed at the measured loss.
+    /// Required for the measured loss.
     pub wanted: usize,
     /// In the last datagram.
     pub used: usize,
-    /// Why they are fewer.
+    /// Why there are fewer.
     pub limit: Limit,
 }
 
 /// Counts datagrams and their bytes, and measures the rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Meter {
-    /// Datagrams.
     pub datagrams: u64,
-    /// Bytes, with the headers of IPv4 and UDP.
+    /// Includes the headers of IPv4 and UDP.
     pub bytes: u64,
     /// Rate over the last full second, bit/s.
     pub rate_bit_s: f64,
@@ -60,71 +59,70 @@ impl Delays {
     }
 }
 
-/// What one session has measured.
+/// Measurements of one session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Figures {
-    /// Their clock, with its bound and the least round trip.
+    /// Their clock, with its bound and the minimum round trip.
     pub clock: Option<Estimate>,
-    /// Steps of a clock that were found.
+    /// Number of detected clock steps.
     pub steps: u32,
-    /// One-way delay of payloads to us in the last 5 s, wrong by the clock's bound at most.
+    /// One-way delay of payloads to us in the last 5 s; the clock's bound limits its error.
     pub one_way: Option<Delays>,
-    /// Play-out delay in force, s.
+    /// Current playout delay, s.
     pub playout_s: Option<f64>,
-    /// Play-out delay that is wanted, s; what is above the one in force is reached by 1 ms/s.
+    /// Target playout delay, s; the current one approaches it at 1 ms/s.
     pub playout_wanted_s: Option<f64>,
-    /// Share of datagrams lost on the way to us, lately.
+    /// Recent fraction of datagrams lost on the way to us.
     pub loss: f64,
-    /// The same on the way to them, as they tell.
+    /// The same on the way to them, as they report it.
     pub loss_there: f64,
-    /// Datagrams that should have come, and those that did not.
+    /// Datagrams that should have arrived.
     pub datagrams_expected: u64,
-    /// See above.
+    /// Datagrams that did not arrive.
     pub datagrams_lost: u64,
-    /// How often each payload is sent.
+    /// Number of times that each payload is sent.
     pub copies: Copies,
-    /// What became of the payloads to us.
+    /// Counts of the payloads to us.
     pub counts: Counts,
-    /// Payloads that had to wait for the next datagram because of the rate's limit.
+    /// Payloads that had to wait for the next datagram because of the rate limit.
     pub held: u64,
-    /// Sent.
     pub sent: Meter,
     /// Received and accepted.
     pub received: Meter,
 }
 
 impl Figures {
-    /// 99.9th percentile minus the least of the one-way delays, s.
+    /// 99.9th percentile minus the minimum of the one-way delays, s.
     pub fn jitter_s(&self) -> Option<f64> {
         self.one_way.map(|delays| delays.p999_s - delays.least_s)
     }
 }
 
-/// Datagrams that were dropped, by cause.
+/// Dropped datagrams, by cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// Not encrypted with the session's keys.
     pub forged: u64,
-    /// Came before.
+    /// Duplicates.
     pub replayed: u64,
     /// Older than the window of 2048 datagrams.
     pub old: u64,
     /// Of another version of the protocol.
     pub foreign_version: u64,
-    /// Cut, too long, or none of this protocol.
+    /// Truncated, too long, or not of this protocol.
     pub malformed: u64,
-    /// Of a session that is not, or no longer, open here.
+    /// Datagrams of a session that is not open here.
     pub unknown_session: u64,
     /// Parts of handshakes beyond the limits.
     pub flooded: u64,
-    /// Handshakes that were refused: a wrong cookie, a key that is not known.
+    /// Refused handshakes: a wrong cookie, or an unknown key.
     pub refused: u64,
-    /// Datagrams of ours that the system did not take.
+    /// Our datagrams that the system did not accept.
     pub unsent: u64,
 }
 
 impl Dropped {
-    /// All of them.
+    /// Sum of all causes.
     pub const fn total(&self) -> u64 {
         self.forged
             + self.replayed

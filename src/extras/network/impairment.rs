@@ -1,87 +1,83 @@
-//! A line that is bad on purpose, and always in the same way: delay, jitter, loss, reordering, duplicates, a limited rate, outages.
+//! A reproducibly impaired line: delay, jitter, loss, reordering, duplicates, a limited rate, outages.
 //!
-//! [`Impairment`] decides when each datagram arrives, on any clock; [`Line`] also holds the datagrams. A study feeds it virtual time, a
-//! [`crate::relay`] the real one. Both directions of a link have a line of their own, so that they can differ.
+//! [`Impairment`] computes when each datagram arrives, on any clock; [`Line`] also holds the datagrams. A study uses
+//! virtual time, a [`crate::relay`] real time. Each direction of a link has its own line, so that they can differ.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use nima_core::noise::Noise;
 use serde::{Deserialize, Serialize};
 
-/// How much longer than the delay a datagram takes.
+/// Additional delay of a datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Jitter {
-    /// No longer.
+    /// None.
     #[default]
     None,
-    /// By the absolute value of a normal number with this standard deviation.
-    Normal {
-        /// Standard deviation, s.
-        deviation_s: f64,
-    },
-    /// By a Pareto (Lomax) number: rarely by very much.
+    /// The absolute value of a normal number with this standard deviation.
+    Normal { deviation_s: f64 },
+    /// A Pareto (Lomax) number: rarely very large.
     Pareto {
-        /// Mean, s.
         mean_s: f64,
         /// Shape, above 1: the smaller, the longer the tail. 3 is usual.
         shape: f64,
     },
 }
 
-/// Which datagrams are lost.
+/// The datagrams that are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Loss {
     /// None.
     #[default]
     None,
-    /// Each with this probability, whatever happened to others.
+    /// Each with this probability, independent of the others.
     Independent {
-        /// Share lost.
+        /// Fraction lost.
         share: f64,
     },
     /// In bursts: while the line is bad all are lost, while it is good none (E. N. Gilbert, 1960; E. O. Elliott, 1963).
     Bursts {
-        /// Share lost in the long run.
+        /// Fraction lost in the long run.
         share: f64,
         /// Mean length of a burst, s.
         burst_s: f64,
     },
 }
 
-/// The line is down again and again.
+/// Periodic interruptions of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Flap {
-    /// For so long, s.
+    /// Duration of an interruption, s.
     pub down_s: f64,
-    /// Once in so long, s; at its end.
+    /// Period, s; the interruption is at its end.
     pub every_s: f64,
 }
 
 /// The published profile of outages: 3.2 s on, 0.8 s off.
 pub const OUTAGES: Flap = Flap { down_s: 0.8, every_s: 4.0 };
 
-/// What is wrong with one direction of a line. The default is a perfect line.
+/// Impairments of one direction of a line. The default is a perfect line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// Least delay, s.
+    /// Minimum delay, s.
     pub delay_s: f64,
-    /// What comes on top.
+    /// Additional delay.
     pub jitter: Jitter,
-    /// Datagrams may overtake each other by their jitter; otherwise a late one holds up those behind it, as in a queue.
+    /// Whether jitter lets datagrams overtake each other; otherwise a late one delays those behind it, as in a queue.
     pub overtakes: bool,
-    /// Which are lost.
+    /// Lost datagrams.
     pub loss: Loss,
-    /// This share is held back by `reorder_s` more, and overtaken meanwhile.
+    /// This fraction is delayed by a further `reorder_s`, and overtaken meanwhile.
     pub reorder: f64,
     /// See `reorder`, s.
     pub reorder_s: f64,
-    /// This share comes twice.
+    /// This fraction arrives twice.
     pub duplicate: f64,
-    /// Most that passes, bit/s; what waits longer than `queue_s` is lost. 0 for no limit.
+    /// Maximum rate, bit/s; a datagram that would wait longer than `queue_s` is lost. 0 for no limit.
     pub rate_bit_s: f64,
     /// See `rate_bit_s`, s.
     pub queue_s: f64,
@@ -90,16 +86,16 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What cannot be, in one sentence.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// The sentence, with key, value and what is allowed.
+    /// A sentence with key, value and the allowed range.
     pub fn check(&self) -> Result<(), String> {
         let share = |name: &str, value: f64| {
             if (0.0..=1.0).contains(&value) {
                 Ok(())
             } else {
-                Err(format!("{name} = {value}: a share is between 0 and 1"))
+                Err(format!("{name} = {value}: it must be between 0 and 1"))
             }
         };
         let time = |name: &str, value: f64| {
@@ -143,25 +139,25 @@ impl Settings {
     }
 }
 
-/// When a datagram arrives, s: not at all, once, or twice.
+/// Arrival times of a datagram, s: none, one, or two.
 pub type Fate = [Option<f64>; 2];
 
-/// Decides what happens to datagrams.
+/// Computes the arrival times of datagrams.
 #[derive(Clone, Debug)]
 pub struct Impairment {
     settings: Settings,
     noise: Noise,
-    /// The line is bad until or good until, s.
+    /// Whether the line is bad, and the end of that state, s.
     is_bad: bool,
     until_s: f64,
-    /// The last datagram that keeps its place in the queue arrives then, s.
+    /// Arrival of the last datagram that keeps its place in the queue, s.
     last_s: f64,
-    /// The rate's limit is busy until, s.
+    /// Until when the rate limit is busy, s.
     busy_s: f64,
 }
 
 impl Impairment {
-    /// The same seed gives the same fates.
+    /// The same seed gives the same arrivals.
     pub fn new(settings: Settings, seed: u64) -> Self {
         let noise = Noise::new(seed);
         Self {
@@ -174,10 +170,11 @@ impl Impairment {
         }
     }
 
-    /// What happens to a datagram of this length (bytes, with all headers) that is sent at `now_s`; times must not go back.
+    /// Returns the arrivals of a datagram of this length (bytes, with all headers) that is sent at `now_s`; times must
+    /// not go back.
     pub fn pass(&mut self, now_s: f64, len: usize) -> Fate {
         let Settings { flap, duplicate, reorder, reorder_s, delay_s, overtakes, .. } = self.settings;
-        // Every datagram draws the same numbers, whatever happens to it.
+        // Every datagram draws the same number of random values, whatever its result.
         let lost = self.noise.uniform();
         let twice = self.noise.uniform();
         let held = self.noise.uniform();
@@ -225,7 +222,7 @@ impl Impairment {
                     self.is_bad = !self.is_bad;
                 }
                 let good_s = burst_s * (1.0 / share - 1.0);
-                // A few changes at most: each lasts as long as the mean of its kind.
+                // Few changes occur: each state lasts as long as the mean of its kind.
                 for _ in 0..1000 {
                     let mean_s = if self.is_bad { burst_s } else { good_s };
                     self.until_s += -mean_s * libm::log(1.0 - self.noise.uniform());
@@ -240,7 +237,7 @@ impl Impairment {
         }
     }
 
-    /// When it has passed the limit of the rate; `None` if it would wait too long.
+    /// Returns when it has passed the rate limit; `None` if it would wait too long.
     fn through_limit(&mut self, now_s: f64, len: usize) -> Option<f64> {
         if self.settings.rate_bit_s <= 0.0 {
             return Some(now_s);
@@ -254,30 +251,30 @@ impl Impairment {
     }
 }
 
-/// A datagram under way.
+/// A datagram in transit.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct UnderWay {
     /// ns, so that it can be ordered.
     due_ns: i64,
-    /// In the order of sending where they are due at once.
+    /// Order of sending, for datagrams that are due at the same time.
     number: u64,
     bytes: Vec<u8>,
 }
 
-/// One direction of a bad line, with the datagrams under way.
+/// One direction of an impaired line, with the datagrams in transit.
 #[derive(Debug)]
 pub struct Line {
     impairment: Impairment,
     under_way: BinaryHeap<Reverse<UnderWay>>,
     number: u64,
-    /// Datagrams given to it, and those that it lost.
+    /// Datagrams sent, and datagrams lost.
     sent: u64,
     lost: u64,
-    /// Added to the length of each for the limit of the rate, bytes.
+    /// Added to the length of each datagram for the rate limit, bytes.
     headers: usize,
 }
 
-/// Datagrams under way at most; more are lost.
+/// Maximum number of datagrams in transit; further ones are lost.
 const UNDER_WAY_MAX: usize = 1 << 17;
 
 impl Line {
@@ -287,7 +284,6 @@ impl Line {
         Self { impairment, under_way: BinaryHeap::new(), number: 0, sent: 0, lost: 0, headers: crate::wire::UDP_LEN }
     }
 
-    /// Sends a datagram.
     pub fn send(&mut self, now_s: f64, bytes: &[u8]) {
         let fate = self.impairment.pass(now_s, bytes.len() + self.headers);
         self.sent += 1;
@@ -300,7 +296,7 @@ impl Line {
         }
     }
 
-    /// The next datagram that has arrived by `now_s`, and when it did, s.
+    /// Returns the next datagram that has arrived by `now_s`, and its arrival time, s.
     pub fn receive(&mut self, now_s: f64) -> Option<(f64, Vec<u8>)> {
         let due_s = self.due_s()?;
         if due_s > now_s {
@@ -309,12 +305,12 @@ impl Line {
         self.under_way.pop().map(|Reverse(datagram)| (due_s, datagram.bytes))
     }
 
-    /// When the next one arrives, s.
+    /// Arrival of the next datagram, s.
     pub fn due_s(&self) -> Option<f64> {
         self.under_way.peek().map(|Reverse(next)| next.due_ns as f64 * 1e-9)
     }
 
-    /// Datagrams given to it, and those that it lost.
+    /// Datagrams sent, and datagrams lost.
     pub const fn totals(&self) -> (u64, u64) {
         (self.sent, self.lost)
     }

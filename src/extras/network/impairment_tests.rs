@@ -69,7 +69,7 @@ fn outages_come_at_their_times() {
 
 #[test]
 fn the_rate_is_limited_with_a_short_queue() {
-    // 1 Mbit/s of datagrams through half of that.
+    // 1 Mbit/s of datagrams through half that rate.
     let settings = Settings { rate_bit_s: 0.5e6, queue_s: 0.02, ..Settings::default() };
     let fates = fates(settings, 10_000);
     assert!((lost_share(&fates) - 0.5).abs() < 0.02, "{}", lost_share(&fates));

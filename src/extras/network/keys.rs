@@ -1,4 +1,4 @@
-//! The key of this machine, and the keys of those it is paired with; files that only their owner can read.
+//! The key of this machine, and the keys of its paired machines; files that only their owner can read.
 
 use std::{
     fmt, fs,
@@ -18,61 +18,47 @@ use crate::secure::NOISE;
 /// Names of the files in the folder.
 const KEY_FILE: &str = "network.key";
 const PEERS_FILE: &str = "network.peers";
-/// Machines that can be paired with one.
+/// Maximum number of paired machines.
 pub const PEERS_MAX: usize = 32;
-/// Longest name of a paired machine, characters.
+/// Maximum length of a paired machine's name, characters.
 const NAME_MAX: usize = 60;
-/// Longest file of keys, bytes.
+/// Maximum size of a file of keys, bytes.
 const FILE_MAX: usize = 16 * 1024;
 
 /// Why keys cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum KeyError {
-    /// The file cannot be read or written.
     #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// Others can read or change the file.
-    #[error("{}: others can read or change it (mode {mode:03o}); make it yours alone: chmod 600", path.display())]
-    Mode {
-        /// The file.
-        path: PathBuf,
-        /// Its mode.
-        mode: u32,
-    },
-    /// The file does not contain what it should.
+    File { path: PathBuf, source: io::Error },
+    /// Other users can read or change the file.
+    #[error("{}: other users can read or change it (mode {mode:03o}); restrict it to yourself: chmod 600", path.display())]
+    Mode { path: PathBuf, mode: u32 },
+    /// The file is malformed.
     #[error("{}, line {line}: {what}", path.display())]
     Content {
-        /// The file.
         path: PathBuf,
-        /// Line, from 1.
+        /// From 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
-    /// The system gives no random numbers.
-    #[error("the system gives no random numbers")]
+    /// The system provides no random numbers.
+    #[error("the system provides no random numbers; try again")]
     Random,
     /// Too many machines, or a name that cannot be written.
     #[error("{0}")]
     Peers(&'static str),
 }
 
-/// What others know a machine by: the public half of its key (Curve25519).
+/// Identifies a machine to others: the public half of its key (Curve25519).
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PublicKey([u8; 32]);
 
 impl PublicKey {
-    /// From its bytes.
     pub const fn new(bytes: [u8; 32]) -> Self {
         Self(bytes)
     }
 
-    /// Its bytes.
     pub const fn bytes(&self) -> &[u8; 32] {
         &self.0
     }
@@ -92,7 +78,7 @@ impl fmt::Debug for PublicKey {
 
 /// The text is not a key: 64 hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a key has 64 hexadecimal digits")]
+#[error("this is not a key: a key has 64 hexadecimal digits; copy it again")]
 pub struct ParseKeyError;
 
 impl FromStr for PublicKey {
@@ -116,7 +102,7 @@ fn bytes_of(text: &str) -> Option<[u8; 32]> {
     Some(bytes)
 }
 
-/// The key of this machine. What it prints is its public half.
+/// The key of this machine. Only its public half is printed.
 #[derive(Clone)]
 pub struct Keys {
     private: [u8; 32],
@@ -130,10 +116,10 @@ impl fmt::Debug for Keys {
 }
 
 impl Keys {
-    /// A new key that is kept nowhere.
+    /// Generates a key that is not stored.
     ///
     /// # Errors
-    /// [`KeyError::Random`] if the system gives no random numbers.
+    /// [`KeyError::Random`] if the system provides no random numbers.
     pub fn random() -> Result<Self, KeyError> {
         let parameters = NOISE.parse().map_err(|_| KeyError::Random)?;
         let pair = Builder::new(parameters).generate_keypair().map_err(|_| KeyError::Random)?;
@@ -141,7 +127,8 @@ impl Keys {
         Self::of(private).ok_or(KeyError::Random)
     }
 
-    /// The key in this folder; made there, with its file, on first use. Only its owner may be able to read the file.
+    /// Opens the key in this folder; creates it, with its file, on first use. Only its owner may be able to read the
+    /// file.
     ///
     /// # Errors
     /// [`KeyError`] with the file.
@@ -183,26 +170,24 @@ impl Keys {
     }
 }
 
-/// A paired machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Peer {
-    /// What its user calls it.
+    /// The name given by its user.
     pub name: String,
-    /// Its key.
     pub key: PublicKey,
 }
 
-/// The machines that this one is paired with.
+/// The paired machines.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Peers {
     list: Vec<Peer>,
 }
 
 impl Peers {
-    /// Those of the file in this folder; none if there is no file.
+    /// Reads the file in this folder; empty if there is no file.
     ///
     /// # Errors
-    /// [`KeyError`] with the file, and the line that is wrong.
+    /// [`KeyError`] with the file and the malformed line.
     pub fn open(folder: &Path) -> Result<Self, KeyError> {
         let path = folder.join(PEERS_FILE);
         let mut this = Self::default();
@@ -222,7 +207,7 @@ impl Peers {
     pub fn save(&self, folder: &Path) -> Result<(), KeyError> {
         let path = folder.join(PEERS_FILE);
         if read(&path)?.is_none() {
-            // Made with its mode, which replacing it keeps.
+            // Created with its mode, which is kept when the file is replaced.
             write_new(&path, "")?;
         }
         let written = nima_files::write_atomically(&path, |file| {
@@ -231,7 +216,7 @@ impl Peers {
         written.map_err(|source| KeyError::File { path, source })
     }
 
-    /// Adds a machine, or gives the one with this key another name.
+    /// Adds a machine, or renames the one with this key.
     ///
     /// # Errors
     /// [`KeyError::Peers`] if there are too many, or the name is empty, too long or of more than one line.
@@ -253,18 +238,17 @@ impl Peers {
         self.list.retain(|peer| peer.key != *key);
     }
 
-    /// All of them.
     pub fn list(&self) -> &[Peer] {
         &self.list
     }
 
-    /// The one with this key.
+    /// Returns the machine with this key.
     pub fn with_key(&self, key: &PublicKey) -> Option<&Peer> {
         self.list.iter().find(|peer| peer.key == *key)
     }
 }
 
-/// The content of a file that only its owner can read; `None` if there is none.
+/// Returns the content of a file that only its owner can read; `None` if there is none.
 fn read(path: &Path) -> Result<Option<String>, KeyError> {
     let error = |source| KeyError::File { path: path.into(), source };
     let metadata = match fs::metadata(path) {
@@ -277,7 +261,7 @@ fn read(path: &Path) -> Result<Option<String>, KeyError> {
     nima_files::read_text(path, FILE_MAX as u64).map(Some).map_err(error)
 }
 
-/// The mode of a file, if it lets others do anything.
+/// Returns the mode of a file if it gives other users any rights.
 #[cfg(unix)]
 fn mode_for_others(metadata: &fs::Metadata) -> Option<u32> {
     use std::os::unix::fs::PermissionsExt as _;
@@ -286,7 +270,7 @@ fn mode_for_others(metadata: &fs::Metadata) -> Option<u32> {
     (mode & 0o077 != 0).then_some(mode)
 }
 
-/// Elsewhere, a user's folder is his alone.
+/// On other systems a user's folder is private.
 #[cfg(not(unix))]
 const fn mode_for_others(_: &fs::Metadata) -> Option<u32> {
     None

@@ -1,12 +1,14 @@
-//! Pairing: two machines learn each other's key, and two people see by a code that nobody stands between them.
+//! Pairing: two machines exchange their keys, and two people verify by a code that there is no third party between
+//! them.
 //!
-//! Each machine contributes its key and a secret that is used once. The console first sends a hash of its own (a commitment), then sees the
-//! follower's, then shows its own: who stands between them would have to guess before he knows what the code depends on, one chance in a
-//! million. Each screen shows a code, made of both keys and both secrets, and each person enters the code of the other screen. A wrong
-//! one is a refusal, and after three of them a machine pairs with nobody for a minute. (Commitment and comparison as in ZRTP, RFC 6189, 4.)
+//! Each machine contributes its key and a secret that is used once. The console first sends a hash of its own part (a
+//! commitment), then receives the follower's part, then reveals its own: a third party would have to guess before the
+//! inputs of the code are known, with a chance of one in a million. Each screen shows a code, computed from both keys
+//! and both secrets, and each person enters the code of the other screen. A wrong code is refused, and after three of
+//! them a machine refuses pairing for a minute. (Commitment and comparison as in ZRTP, RFC 6189, 4.)
 //!
-//! It is no part of a loop: [`Pairing::ask`] and [`Pairing::offer`] wait, on a thread of the caller's, while a person has pressed a button
-//! on both machines.
+//! Pairing is not part of a loop: [`Pairing::ask`] and [`Pairing::offer`] block the caller's own thread until the other
+//! person has pressed the button as well.
 
 use std::{
     fmt, io,
@@ -25,18 +27,18 @@ use crate::{
     wire::{self, HANDSHAKE_LEN, Kind},
 };
 
-/// Wrong codes before a pause, and its length.
+/// Number of wrong codes before a pause, and its length.
 pub const WRONG_MAX: usize = 3;
 /// See [`WRONG_MAX`].
 pub const PAUSE: Duration = Duration::from_mins(1);
 /// Digits of a code.
 const DIGITS: u32 = 6;
-/// A question is asked again after this.
+/// A request is repeated after this time.
 const AGAIN: Duration = Duration::from_millis(200);
 const NAP: Duration = Duration::from_millis(5);
-/// So long the last answer is repeated for a question that comes again: it may have been lost.
+/// The last answer is repeated for this long when its request is repeated, because it may have been lost.
 const REPEATS: Duration = Duration::from_secs(1);
-/// Commitments that a follower answers in one pairing; more are somebody who tries.
+/// Maximum number of commitments that a follower answers in one pairing; more indicate an attack.
 const TRIES_MAX: usize = 8;
 
 /// Steps, in the first byte after the number of the pairing.
@@ -45,43 +47,38 @@ const ANSWER: u8 = 2;
 const REVEAL: u8 = 3;
 const DONE: u8 = 4;
 
-/// Each datagram of a pairing is as long as the longest: no answer is longer than its question.
+/// All datagrams of a pairing have the length of the longest, so that no answer is longer than its request.
 const LEN: usize = HANDSHAKE_LEN + 1 + 64;
 
-/// Why no pairing was made.
+/// Why pairing failed.
 #[derive(Debug, thiserror::Error)]
 pub enum PairingError {
     /// The address cannot be used.
-    #[error("pairing: cannot use {address}: {source}")]
-    Address {
-        /// The address.
-        address: SocketAddr,
-        /// Why.
-        source: io::Error,
-    },
-    /// Nobody answered in time, or it was called off.
-    #[error("pairing: nobody answered; begin it on both machines, and look at the address and the firewall")]
+    #[error("pairing: cannot use {address}: {source}; correct the address")]
+    Address { address: SocketAddr, source: io::Error },
+    /// No answer in time, or cancelled.
+    #[error("pairing: no answer; start it on both machines, and check the address and the firewall")]
     Nobody,
-    /// What came does not fit to what was promised before: somebody stands between the machines.
-    #[error("pairing: the other side contradicts itself; somebody may stand between the two machines")]
-    Contradiction,
-    /// The code that was entered is another one.
+    /// The revealed part does not match its commitment: a third party is between the machines.
     #[error(
-        "pairing: the codes differ; nothing was kept. If nobody mistyped it, somebody stands between the two machines"
+        "pairing: the other side's data contradict its commitment, so a third party may be between the two machines; check the network, then pair again"
+    )]
+    Contradiction,
+    /// The entered code is wrong.
+    #[error(
+        "pairing: the codes differ, and nothing was saved. If neither was mistyped, a third party is between the two machines: check the network, then pair again"
     )]
     WrongCode,
     /// Too many wrong codes.
-    #[error("pairing: too many wrong codes; wait {wait_s:.0} s")]
-    TooMany {
-        /// How long, s.
-        wait_s: f64,
-    },
-    /// The system gives no random numbers.
+    #[error("pairing: too many wrong codes; wait {wait_s:.0} s, then try again")]
+    TooMany { wait_s: f64 },
+    /// The system provides no random numbers.
     #[error(transparent)]
     Keys(#[from] KeyError),
 }
 
-/// What a screen shows: six digits, others on each of the two machines, so that nobody can enter those of his own screen unseen.
+/// The displayed code: six digits, different on each machine, so that entering the code of one's own screen is
+/// detected.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Code(u32);
 
@@ -104,7 +101,7 @@ pub struct Attempts {
 }
 
 impl Attempts {
-    /// Whether another pairing may be begun.
+    /// Checks whether another pairing may begin.
     ///
     /// # Errors
     /// [`PairingError::TooMany`] with the time to wait.
@@ -129,12 +126,12 @@ pub struct Pending {
 }
 
 impl Pending {
-    /// The code to show here, which is to be entered at the other machine.
+    /// The code to show here, which must be entered on the other machine.
     pub const fn code(&self) -> Code {
         self.shown
     }
 
-    /// The other machine's key, if `entered` is the code that its screen shows; spaces do not count.
+    /// Returns the other machine's key if `entered` is the code on its screen; spaces are ignored.
     ///
     /// # Errors
     /// [`PairingError::WrongCode`], which is counted.
@@ -188,7 +185,7 @@ fn hash(parts: &[&[u8]]) -> [u8; 32] {
     hash.finalize().into()
 }
 
-/// The codes that the console's and the follower's screen show.
+/// Returns the codes for the console's and the follower's screen.
 fn codes(console: &Part, follower: &Part) -> [Code; 2] {
     [&b"nima pairing 1 console"[..], b"nima pairing 1 follower"].map(|of| {
         let [a, b, c, d, e, f, g, h, ..] = hash(&[of, &console.bytes(), &follower.bytes()]);
@@ -206,7 +203,7 @@ fn datagram(token: u64, step: u8, content: &[u8]) -> [u8; LEN] {
     bytes
 }
 
-/// Number, step and content of a datagram of a pairing.
+/// Returns number, step and content of a datagram of a pairing.
 fn read(bytes: &[u8]) -> Option<(u64, u8, &[u8])> {
     let is_pairing = bytes.len() == LEN && wire::kind(bytes) == Ok(Kind::Pairing);
     let (step, content) = bytes.get(HANDSHAKE_LEN..)?.split_first()?;
@@ -218,16 +215,16 @@ fn next(socket: &Socket, buffer: &mut [u8; 2 * LEN]) -> Option<(usize, SocketAdd
     Some((arrival.len.min(buffer.len()), arrival.from))
 }
 
-/// What a machine needs for a pairing, on whichever side.
+/// The inputs of a pairing, for either side.
 #[derive(Debug)]
 pub struct Pairing<'a> {
     /// Its keys.
     pub keys: &'a Keys,
-    /// The wrong codes entered at it.
+    /// The wrong codes entered on it.
     pub attempts: &'a mut Attempts,
-    /// So long it waits for the other side.
+    /// How long to wait for the other side.
     pub wait: Duration,
-    /// Whether to give up before.
+    /// Set to cancel the pairing.
     pub called_off: &'a AtomicBool,
 }
 
@@ -235,7 +232,7 @@ impl Pairing<'_> {
     /// The console's side: asks the follower at this address.
     ///
     /// # Errors
-    /// [`PairingError`] if nobody answers, or too many wrong codes were entered before.
+    /// [`PairingError`] if there is no answer, or too many wrong codes were entered before.
     pub fn ask(self, follower: SocketAddr) -> Result<Pending, PairingError> {
         let begin = Instant::now();
         self.attempts.may_begin(begin)?;
@@ -264,7 +261,7 @@ impl Pairing<'_> {
                     question = datagram(token, REVEAL, &own.bytes());
                     asked = None;
                 }
-                // Another answer than before.
+                // The answer differs from an earlier one.
                 (Some((_, ANSWER, content)), Some(theirs)) if content != theirs.bytes() => {
                     return Err(PairingError::Contradiction);
                 }
@@ -278,17 +275,17 @@ impl Pairing<'_> {
         Err(PairingError::Nobody)
     }
 
-    /// The follower's side: listens at this address. The first console that shows what it promised
-    /// is the one; nobody else is heard then.
+    /// The follower's side: listens at this address. The first console that reveals its commitment is accepted; others
+    /// are then ignored.
     ///
     /// # Errors
-    /// [`PairingError`] if nobody asks, or too many wrong codes were entered before.
+    /// [`PairingError`] if no console asks, or too many wrong codes were entered before.
     pub fn offer(self, at: SocketAddr) -> Result<Pending, PairingError> {
         let begin = Instant::now();
         self.attempts.may_begin(begin)?;
         let socket = Socket::open(at, None).map_err(|source| PairingError::Address { address: at, source })?;
         let mut buffer = [0; 2 * LEN];
-        // Of each console: where it is, its number, what it promised, and our part, which is another one for each.
+        // For each console its address, its number, its commitment, and our part, which differs for each.
         let mut asked: Vec<(SocketAddr, u64, [u8; 32], Part)> = Vec::new();
         while self.goes_on(begin) {
             let Some((len, from)) = next(&socket, &mut buffer) else {
@@ -327,7 +324,7 @@ impl Pairing<'_> {
     }
 }
 
-/// Sends the last answer, and again for each question that shows that it was lost.
+/// Sends the last answer, and repeats it for each request that shows that it was lost.
 fn repeat(socket: &Socket, answer: &[u8; LEN], token: u64, to: SocketAddr) {
     let begin = Instant::now();
     let mut buffer = [0; 2 * LEN];

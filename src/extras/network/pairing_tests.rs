@@ -8,17 +8,17 @@ use crate::{
 
 const WAIT: Duration = Duration::from_secs(10);
 
-/// A port that was free a moment ago.
+/// An address whose port was free a moment ago.
 fn free_address() -> SocketAddr {
     UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
 
-/// A pairing of a machine where no wrong code was entered yet.
+/// A pairing of a machine without earlier wrong codes.
 fn offered(keys: &Keys, at: SocketAddr, called_off: &AtomicBool) -> Result<Pending, PairingError> {
     Pairing { keys, attempts: &mut Attempts::default(), wait: WAIT, called_off }.offer(at)
 }
 
-/// Both sides over this address of the follower, which the console reaches at another.
+/// Runs both sides; the console reaches the follower through `reached`.
 fn both(console: &Keys, follower: &Keys, at: SocketAddr, reached: SocketAddr) -> [Result<Pending, PairingError>; 2] {
     let stop = AtomicBool::new(false);
     scope(|scope| {
@@ -82,13 +82,13 @@ fn a_wrong_code_is_refused_and_the_third_makes_a_pause() {
 
 #[test]
 fn who_stands_between_is_seen() {
-    // He pairs with both sides by keys of his own: the codes differ.
+    // An attacker pairs with both sides using other keys: the codes differ.
     let [console, follower, between] = [0; 3].map(|_| Part::new(&Keys::random().unwrap()).unwrap());
     let [[at_console, _], [_, at_follower]] = [codes(&console, &between), codes(&between, &follower)];
     let [[_, expected_there], [expected_here, _]] = [codes(&console, &between), codes(&between, &follower)];
     assert_ne!(at_console, expected_here);
     assert_ne!(at_follower, expected_there);
-    // He must promise before he knows the follower's part; another part than promised is told.
+    // An attacker must commit before the follower's part is known; a part other than the committed one is detected.
     let at = free_address();
     let stop = AtomicBool::new(false);
     let keys = Keys::random().unwrap();

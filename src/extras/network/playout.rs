@@ -1,39 +1,40 @@
-//! When a payload is handed over: a delay after it was sent that nearly every payload keeps, and that never steps.
+//! Playout: delivers each payload at a fixed delay after it was sent, which nearly every payload meets, and which never
+//! steps.
 //!
-//! The delay wanted is the 99.9th percentile of the one-way delays of the last 5 s, and a margin. The delay in force follows it by at
-//! most 1 ms/s. Payloads are handed over in order, each once. One that comes after its time is handed over at once if it is newer than
-//! all before it, and counted as late; one that is not is counted as stale. One that never comes is counted as lost when a newer one is
-//! handed over.
+//! The target delay is the 99.9th percentile of the one-way delays of the last 5 s, plus a margin. The current delay
+//! follows it by at most 1 ms/s. Payloads are delivered in order, each once. One that arrives after its time is
+//! delivered at once if it is newer than all earlier ones, and counted as late; otherwise it is counted as stale. One
+//! that never arrives is counted as lost when a newer one is delivered.
 //!
-//! All of this compares payloads with each other, so that it needs no estimate of the clocks' offset: delays are apparent ones, which
-//! contain it.
+//! All of this compares payloads with each other, so no estimate of the clocks' offset is needed: delays are apparent
+//! ones, which contain the offset.
 
 use serde::{Deserialize, Serialize};
 
-/// Length of one part of the statistics, s, and their number: 5 s together.
+/// Length of one part of the statistics, s, and number of parts: 5 s together.
 const PART_S: f64 = 0.5;
 const PARTS: usize = 10;
-/// Largest delays that are kept of each part: enough for the percentile of 16 000 payloads.
+/// Number of the largest delays stored for each part: enough for the percentile of 16 000 payloads.
 const TOP: usize = 16;
-/// Share of payloads that may come later than the delay wanted.
+/// Fraction of payloads that may arrive later than the target delay.
 const LATE_SHARE: f64 = 1e-3;
-/// What is measured before the first payload is handed over, s and payloads.
+/// Measuring time before the first payload is delivered, s and payloads.
 const FIRST_S: f64 = 0.1;
 const FIRST_COUNT: u32 = 20;
-/// After a step of a clock, payloads needed before the delay moves again.
+/// Number of payloads needed after a clock step before the delay moves again.
 const AGAIN_COUNT: u32 = 500;
 
-/// When payloads are handed over.
+/// Settings of the delivery.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PlayoutSettings {
-    /// Payloads wait for the play-out delay; otherwise each is handed over when it comes, unless a newer one was.
+    /// Whether payloads wait for the playout delay; otherwise each is delivered on arrival, unless a newer one was.
     pub waits: bool,
     /// Added to the percentile, s.
     pub margin_s: f64,
-    /// Fastest change of the delay, s per s.
+    /// Maximum rate of change of the delay, s per s.
     pub rate: f64,
-    /// Payloads that may wait at once; with the rate of the stream this limits the delay.
+    /// Maximum number of waiting payloads; with the rate of the stream this limits the delay.
     pub room: usize,
 }
 
@@ -43,33 +44,32 @@ impl Default for PlayoutSettings {
     }
 }
 
-/// A payload that is handed over.
+/// A payload that is delivered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Payload<'a> {
-    /// Its number: that of the first is 0.
+    /// From 0.
     pub number: u64,
-    /// When it was sent, by their clock, s.
+    /// Time of sending, by their clock, s.
     pub sent_s: f64,
-    /// How long ago that is, s; wrong by the bound of the clock's estimate at most.
+    /// Time since sending, s; the bound of the clock's estimate limits its error.
     pub age_s: f64,
-    /// It came after its time.
+    /// Whether it arrived after its time.
     pub is_late: bool,
-    /// Its content.
     pub bytes: &'a [u8],
 }
 
-/// What became of the payloads.
+/// Counts of payloads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Handed over.
+    /// Delivered.
     pub delivered: u64,
-    /// Of these, after their time.
+    /// Delivered after their time.
     pub late: u64,
-    /// Never came before a newer one was handed over.
+    /// Not received before a newer one was delivered.
     pub lost: u64,
-    /// Came for the first time after a newer one had been handed over; they are among the lost.
+    /// Received after a newer one had been delivered; they are among the lost.
     pub stale: u64,
-    /// Came in a later datagram than their own.
+    /// Received in a later datagram than their own.
     pub recovered: u64,
 }
 
@@ -98,12 +98,11 @@ impl Part {
     }
 }
 
-/// One-way delays of the last seconds; apparent, that is with the clocks' offset in them, s.
+/// One-way delays of the last seconds; apparent, i.e. including the clocks' offset, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delays {
-    /// Least.
+    /// Minimum.
     pub least_s: f64,
-    /// Mean.
     pub mean_s: f64,
     /// 99.9th percentile.
     pub p999_s: f64,
@@ -125,14 +124,14 @@ pub struct Playout {
     slots: Vec<Slot>,
     bytes: Vec<u8>,
     payload_max: usize,
-    /// Number of the next payload to hand over, and one more than the highest that came.
+    /// Number of the next payload to deliver, and one more than the highest received.
     next: u64,
     end: u64,
     parts: [Part; PARTS],
     part: usize,
     part_begin_s: Option<f64>,
     first_s: Option<f64>,
-    /// Apparent delay in force, s; `None` before the first is handed over.
+    /// Current apparent delay, s; `None` before the first delivery.
     delay_s: Option<f64>,
     wanted_s: Option<f64>,
     moved_s: f64,
@@ -164,22 +163,22 @@ impl Playout {
         }
     }
 
-    /// What became of the payloads.
+    /// Counts of payloads.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Apparent delay in force, s; `None` before the first payload is handed over, and where payloads do not wait.
+    /// Current apparent delay, s; `None` before the first delivery, and if payloads do not wait.
     pub fn delay_s(&self) -> Option<f64> {
         self.delay_s.filter(|_| self.settings.waits)
     }
 
-    /// Apparent delay wanted, s.
+    /// Target apparent delay, s.
     pub const fn wanted_s(&self) -> Option<f64> {
         self.wanted_s
     }
 
-    /// Number of the payload that came last in order, plus one.
+    /// Number of the last payload in order, plus one.
     pub const fn end(&self) -> u64 {
         self.end
     }
@@ -193,7 +192,8 @@ impl Playout {
         Some(Delays { least_s, mean_s: sum_s / f64::from(count), p999_s })
     }
 
-    /// Their clock minus ours has changed by this, s: delays are apparent, and what was measured before means nothing now.
+    /// Called when their clock minus ours has changed by this, s: delays are apparent, so earlier measurements are no
+    /// longer valid.
     pub fn clock_stepped(&mut self, by_s: f64) {
         self.delay_s = self.delay_s.map(|delay_s| delay_s - by_s);
         self.wanted_s = self.delay_s;
@@ -206,7 +206,7 @@ impl Playout {
         }
     }
 
-    /// Begins anew with the next payload: nothing that has come before is handed over.
+    /// Restarts with the next payload: earlier ones are not delivered.
     pub fn begin(&mut self) {
         self.next = self.end;
         self.parts = [EMPTY; PARTS];
@@ -216,8 +216,8 @@ impl Playout {
         self.wanted_s = None;
     }
 
-    /// Takes a payload that has arrived: its number, when it was sent (s, their clock) and when it came (s, ours), and whether it is
-    /// the newest of its datagram. One that came before is ignored.
+    /// Adds a received payload: its number, time of sending (s, their clock), time of arrival (s, ours), and whether it
+    /// is the newest of its datagram. Duplicates are ignored.
     pub fn insert(&mut self, number: u64, sent_s: f64, arrived_s: f64, is_newest: bool, bytes: &[u8]) {
         let room = self.slots.len() as u64;
         if bytes.len() > self.payload_max || !(sent_s + arrived_s).is_finite() {
@@ -228,7 +228,7 @@ impl Playout {
             return;
         }
         if number < self.next {
-            // Within the memory of the slots it is known not to have come before.
+            // While its slot is remembered, it is certain that it had not arrived before.
             self.counts.stale += u64::from(self.next - number <= room && self.slots[index].mark < number + 1);
             self.slots[index].mark = self.slots[index].mark.max(number + 1);
             return;
@@ -257,7 +257,7 @@ impl Playout {
         self.parts[self.part].add(delay_s);
     }
 
-    /// The percentile of this many payloads, s: the largest delays of all parts, merged.
+    /// Percentile of this many payloads, s: the largest delays of all parts, merged.
     fn percentile_s(&self, count: u32) -> Option<f64> {
         let rank = (f64::from(count) * LATE_SHARE).floor() as usize;
         let mut taken = [0_usize; PARTS];
@@ -272,7 +272,7 @@ impl Playout {
         percentile_s.filter(|_| count > 0)
     }
 
-    /// Moves the delay towards the one that is wanted. Call it once per tick, before payloads are taken.
+    /// Moves the delay towards its target. Call it once per tick, before payloads are taken.
     pub fn advance(&mut self, now_s: f64) {
         let passed_s = (now_s - self.moved_s).clamp(0.0, 0.1);
         self.moved_s = now_s;
@@ -293,7 +293,8 @@ impl Playout {
         }
     }
 
-    /// Before the first payload: those that were sent before this (s, their clock) only served to measure.
+    /// Before the first delivery: excludes payloads sent before this time (s, their clock), which only served for
+    /// measuring.
     fn leave_out(&mut self, before_s: f64) {
         let room = self.slots.len() as u64;
         let is_wanted = |number: &u64| {
@@ -303,7 +304,7 @@ impl Playout {
         self.next = (self.next..self.end).find(is_wanted).unwrap_or(self.end);
     }
 
-    /// The next payload that is due; `offset_s` is their clock minus ours.
+    /// Returns the next payload that is due; `offset_s` is their clock minus ours.
     pub fn take(&mut self, now_s: f64, offset_s: f64) -> Option<Payload<'_>> {
         let delay_s = if self.settings.waits { self.delay_s? } else { f64::NEG_INFINITY };
         let room = self.slots.len() as u64;

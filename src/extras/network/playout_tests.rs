@@ -4,7 +4,8 @@ fn playout() -> Playout {
     Playout::new(PlayoutSettings::default(), 8)
 }
 
-/// Feeds 1 kHz of payloads with these delays (s) and takes what is due each ms. Numbers handed over, with their ages.
+/// Feeds 1 kHz of payloads with these delays (s) and takes the due ones every ms. Returns the delivered numbers with
+/// their ages.
 fn run(playout: &mut Playout, from: u64, count: u64, delay_s: impl Fn(u64) -> Option<f64>) -> Vec<(u64, f64, bool)> {
     let mut under_way: Vec<(f64, u64)> =
         (from..from + count).filter_map(|i| Some((i as f64 * 1e-3 + delay_s(i)?, i))).collect();
@@ -26,7 +27,7 @@ fn run(playout: &mut Playout, from: u64, count: u64, delay_s: impl Fn(u64) -> Op
     got
 }
 
-/// A delay between 0 and 5 ms that looks random.
+/// A pseudo-random delay between 0 and 5 ms.
 fn scattered_s(i: u64) -> f64 {
     (i.wrapping_mul(2_654_435_761) % 1000) as f64 * 5e-6
 }
@@ -66,7 +67,7 @@ fn a_sudden_rise_is_told_and_the_delay_follows_without_a_step() {
     let before_s = playout.delay_s().unwrap();
     let got = run(&mut playout, 3000, 1000, |_| Some(30e-3));
     assert!(playout.counts().late > 900, "every payload comes after its time: {:?}", playout.counts());
-    assert!(got.iter().rev().take(900).all(|&(_, age_s, is_late)| is_late && age_s < 32e-3), "handed over at once");
+    assert!(got.iter().rev().take(900).all(|&(_, age_s, is_late)| is_late && age_s < 32e-3), "delivered at once");
     let after_s = playout.delay_s().unwrap();
     assert!(after_s > before_s && after_s - before_s <= 1e-3 + 1e-9, "{before_s} to {after_s}");
     run(&mut playout, 4000, 25_000, |_| Some(30e-3));
@@ -127,7 +128,7 @@ fn a_step_of_the_clock_moves_no_payload() {
     let before_s = playout.delay_s().unwrap();
     playout.clock_stepped(50e-3);
     assert!((playout.delay_s().unwrap() - (before_s - 50e-3)).abs() < 1e-12);
-    // From now on they stamp 50 ms more.
+    // From now on their stamps are 50 ms higher.
     let mut late = 0;
     for tick in 3000..4000_u64 {
         let now_s = tick as f64 * 1e-3;

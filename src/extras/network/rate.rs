@@ -1,9 +1,9 @@
-//! Limits of rates, as buckets that fill steadily.
+//! Rate limits, as token buckets.
 
-/// So much may be saved up, as time, s.
+/// Maximum saving, as time, s.
 const SAVED_S: f64 = 0.01;
 
-/// Limits how much is spent per second.
+/// Limits the amount spent per second.
 #[derive(Clone, Copy, Debug)]
 pub struct Bucket {
     per_s: f64,
@@ -13,18 +13,18 @@ pub struct Bucket {
 }
 
 impl Bucket {
-    /// A full bucket that fills at this rate per second and holds this much.
+    /// A full bucket that fills at this rate per second and has this capacity.
     pub const fn new(per_s: f64, room: f64) -> Self {
         Self { per_s, room, level: room, filled_s: None }
     }
 
-    /// For datagrams: bytes at this rate (bit/s), with room for what 10 ms allow, and for one datagram of `least` bytes.
+    /// For datagrams: bytes at this rate (bit/s), with a capacity of 10 ms plus one datagram of `least` bytes.
     pub fn of_bits(bits_per_s: f64, least: usize) -> Self {
         let per_s = bits_per_s / 8.0;
         Self::new(per_s, (per_s * SAVED_S).max(least as f64))
     }
 
-    /// What may be spent now.
+    /// Returns the amount available now.
     pub fn level(&mut self, now_s: f64) -> f64 {
         let passed_s = self.filled_s.map_or(0.0, |filled_s| (now_s - filled_s).max(0.0));
         self.filled_s = Some(now_s);
@@ -32,7 +32,7 @@ impl Bucket {
         self.level
     }
 
-    /// Spends as much, if it is there.
+    /// Spends this amount if it is available.
     pub fn spend(&mut self, amount: f64, now_s: f64) -> bool {
         let is_there = self.level(now_s) >= amount;
         if is_there {

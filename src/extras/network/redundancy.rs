@@ -1,26 +1,27 @@
-//! Every datagram carries the last n payloads, so that a lost one arrives with the next.
+//! Redundancy: every datagram carries the last n payloads, so that a lost payload arrives with the next datagram.
 //!
-//! The receiver measures how many datagrams are lost and how often two in a row, and tells the sender. The sender takes the least n at which
-//! a payload is lost with all its copies less often than [`LEFT_OVER`], as far as the datagram and the limit of the rate have room.
+//! The receiver measures the loss of datagrams, and how often two in a row are lost, and reports it to the sender. The
+//! sender uses the smallest n at which a payload is lost with all its copies less often than [`LEFT_OVER`], as far as
+//! the datagram size and the rate limit permit.
 
 use crate::wire::{AGE_MAX_S, COPIES_MAX, Record};
 
-/// Share of payloads that may be lost with all their copies.
+/// Allowed fraction of payloads that are lost with all their copies.
 pub const LEFT_OVER: f64 = 1e-4;
-/// A datagram counts as lost when this many later ones have come.
+/// A datagram counts as lost when this many later ones have arrived.
 const PATIENCE: u64 = 64;
-/// A run of this many lost ones is an outage, which no copies cure: it does not count for their number.
+/// A run of this many lost datagrams is an outage, which copies cannot remedy, and does not count towards their number.
 const OUTAGE: u32 = 64;
-/// Numbers that are remembered.
+/// Number of datagram numbers stored.
 const ROOM: u64 = 1024;
-/// Length of one part of the statistics, s, and their number.
+/// Length of one part of the statistics, s, and number of parts.
 const PART_S: f64 = 0.5;
 const PARTS: usize = 10;
-/// The last parts that alone can raise the loss: a link that becomes bad is answered within a second.
+/// Number of recent parts that alone can raise the loss, so that a deteriorating link is answered within a second.
 const RECENT: usize = 2;
 
-/// Copies needed at this loss: `loss` is the share of datagrams lost, `again` that of those after a lost one. What comes after a later one
-/// counts like what is lost: its payload may be due before.
+/// Returns the required number of copies: `loss` is the fraction of datagrams lost, `again` the fraction lost after a
+/// lost one. A reordered datagram counts as lost, because its payload may be due before it arrives.
 ///
 /// ```
 /// use nima_network::redundancy::copies_for;
@@ -41,14 +42,13 @@ pub fn copies_for(loss: f64, again: f64) -> usize {
     copies
 }
 
-/// What a sender may need again.
+/// Payloads that a sender may need again.
 #[derive(Clone, Debug)]
 pub struct History {
     /// Content, length and time of sending of each payload.
     bytes: Vec<u8>,
     sent: [(usize, f64); COPIES_MAX],
     payload_max: usize,
-    /// Number of payloads so far.
     count: u64,
 }
 
@@ -58,7 +58,6 @@ impl History {
         Self { bytes: vec![0; payload_max * COPIES_MAX], sent: [(0, 0.0); COPIES_MAX], payload_max, count: 0 }
     }
 
-    /// Number of payloads so far.
     pub const fn count(&self) -> u64 {
         self.count
     }
@@ -76,7 +75,7 @@ impl History {
         true
     }
 
-    /// Length of the longest payload of late, bytes.
+    /// Length of the longest recent payload, bytes.
     pub fn longest(&self) -> usize {
         let known = (self.count as usize).min(COPIES_MAX);
         self.sent.iter().take(known).map(|(len, _)| *len).max().unwrap_or(0)
@@ -94,9 +93,9 @@ impl History {
         self.sent[self.index(back)].1
     }
 
-    /// Writes the last payloads, newest first, at most this many and as far as there is room. The first `fresh` of them have not been sent
-    /// yet; the others are copies, which take the first `for_copies` bytes at most. Where not all copies fit, those much longer than
-    /// the mean are left out, so that one of them does not cost many short ones their copy.
+    /// Writes the last payloads, newest first, at most this many and as far as there is room. The first `fresh` of them
+    /// have not been sent yet; the others are copies, which use at most the first `for_copies` bytes. If not all copies
+    /// fit, those much longer than the mean are left out, so that one of them does not displace many short ones.
     pub fn write(&self, copies: usize, fresh: usize, now_s: f64, room: &mut [u8], for_copies: usize) -> Written {
         let mut written = Written::default();
         let count = (copies.min(COPIES_MAX) as u64).min(self.count);
@@ -125,14 +124,14 @@ impl History {
     }
 }
 
-/// What was written into a datagram.
+/// The payloads written into a datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Written {
-    /// Length.
+    /// Length, bytes.
     pub bytes: usize,
-    /// Payloads that stand in it, those that are left out included.
+    /// Number of payloads in it, including those left out.
     pub records: usize,
-    /// Payloads that it carries.
+    /// Number of payloads that it carries.
     pub carried: usize,
 }
 
@@ -140,22 +139,22 @@ pub struct Written {
 struct Part {
     all: u32,
     lost: u32,
-    /// Lost ones after a lost one.
+    /// Lost after a lost one.
     again: u32,
-    /// Those that came after a later one.
+    /// Arrived after a later one.
     overtaken: u32,
 }
 
-/// Measures which datagrams are lost.
+/// Measures the loss of datagrams.
 #[derive(Clone, Debug)]
 pub struct Losses {
-    /// Bit of each number: it came.
+    /// One bit per number: whether it arrived.
     came: [u64; (ROOM / 64) as usize],
-    /// One more than the highest number that came.
+    /// One more than the highest number received.
     end: u64,
-    /// Numbers below are judged.
+    /// Lower numbers have been judged.
     judged: u64,
-    /// Length of the run of lost ones that ends with the last judged one.
+    /// Length of the run of lost datagrams that ends with the last judged one.
     run: u32,
     /// How many of them the statistics contain.
     added: u32,
@@ -184,7 +183,7 @@ impl Default for Losses {
 }
 
 impl Losses {
-    /// The datagram with this number came.
+    /// Called when the datagram with this number arrived.
     pub fn add(&mut self, number: u64, now_s: f64) {
         if now_s - self.part_begin_s >= PART_S {
             self.part = (self.part + 1) % PARTS;
@@ -196,7 +195,7 @@ impl Losses {
             return;
         }
         if number >= self.end {
-            // An outage: what lies far behind is lost without a look at each.
+            // In an outage, numbers far behind are lost without checking each.
             if number - self.end > ROOM - PATIENCE {
                 self.skip_to(number);
             }
@@ -208,7 +207,7 @@ impl Losses {
         self.came[(number / 64 % (ROOM / 64)) as usize] |= 1 << (number % 64);
     }
 
-    /// All numbers below this one count as lost or were judged before.
+    /// Skips all numbers below this one, which count as lost or were judged before.
     fn skip_to(&mut self, number: u64) {
         while self.judged < self.end {
             self.judge();
@@ -236,7 +235,7 @@ impl Losses {
             part.lost = part.lost.saturating_add(u32::from(is_lost));
             part.again = part.again.saturating_add(u32::from(run > 1));
         } else {
-            // What the run has added is taken away, once; a run over two parts leaves some.
+            // Removes once what the run has added; a run across two parts leaves some.
             let added = std::mem::take(&mut self.added);
             part.lost = part.lost.saturating_sub(added);
             part.again = part.again.saturating_sub(added.saturating_sub(1));
@@ -252,29 +251,29 @@ impl Losses {
         })
     }
 
-    /// Share of datagrams that were lost lately: of the last 5 s or the last second, whichever is worse. And of those after a lost
-    /// one, the share that was lost too.
+    /// Returns the recent fraction of datagrams lost, over the last 5 s or the last second, whichever is worse; and the
+    /// fraction lost after a lost one.
     pub fn shares(&self) -> (f64, f64) {
         let share = |parts| {
             let (all, lost, _) = self.sum(parts);
-            // Too few to tell a share from.
+            // Too few for a fraction.
             if all < 100.0 { 0.0 } else { lost / all }
         };
         let loss = f64::max(share(PARTS), share(RECENT));
         let (_, lost, again) = self.sum(PARTS);
-        // As if two had been lost alone at this share: one chance run is no burst.
+        // Two isolated losses at this rate are added, so that a single chance run does not count as a burst.
         let again = if lost == 0.0 { loss } else { (again + 10.0 * loss) / (lost + 10.0) };
         (loss, again.max(loss).min(1.0))
     }
 
-    /// Share of datagrams of the last 5 s that came after a later one.
+    /// Fraction of datagrams of the last 5 s that arrived after a later one.
     pub fn overtaken(&self) -> f64 {
         let (all, ..) = self.sum(PARTS);
         let overtaken: u32 = self.parts.iter().map(|part| part.overtaken).sum();
         if all < 100.0 { 0.0 } else { (f64::from(overtaken) / all).min(1.0) }
     }
 
-    /// All datagrams that should have come, and those that did not.
+    /// All datagrams that should have arrived, and those that did not.
     pub const fn totals(&self) -> (u64, u64) {
         (self.all, self.lost)
     }

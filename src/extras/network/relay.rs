@@ -1,7 +1,7 @@
-//! A relay between two real ends that makes the line between them bad: on any system, without special rights.
+//! A relay between two real ends that impairs the line between them: on any system, without special rights.
 //!
-//! Consoles send to it instead of to the follower. Each console gets a socket of its own towards the follower, so that the follower tells
-//! them apart. The relay sees encrypted datagrams only, and adds 0.1 to 0.2 ms of its own.
+//! Consoles send to it instead of to the follower. Each console gets its own socket towards the follower, so that the
+//! follower can tell them apart. The relay handles encrypted datagrams only, and adds 0.1 to 0.2 ms of its own.
 
 use std::{
     io,
@@ -19,47 +19,47 @@ use crate::{
     worker::Worker,
 };
 
-/// Consoles at once; the one that has been silent longest makes room.
+/// Maximum number of consoles; a new one replaces the one that has been silent longest.
 const CLIENTS_MAX: usize = 8;
-/// How often it looks: while something is under way, and at rest.
+/// Polling interval while datagrams are in transit, and while idle.
 const BUSY: Duration = Duration::from_micros(100);
 const REST: Duration = Duration::from_millis(1);
-/// Without a datagram for this long it rests, s.
+/// Time without a datagram after which it is idle, s.
 const REST_AFTER_S: f64 = 0.1;
-/// Datagrams taken from a socket before others have their turn.
+/// Datagrams read from a socket before the others have their turn.
 const TURN: usize = 64;
-/// Longest datagram.
+/// Maximum datagram, bytes.
 const BUFFER_LEN: usize = 2048;
 
-/// Where a relay stands and what it does.
+/// Addresses and impairments of a relay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelaySettings {
-    /// It listens here.
+    /// Its own address.
     pub at: SocketAddr,
     /// The follower's address.
     pub to: SocketAddr,
-    /// The way to the follower, and the way back.
+    /// Towards the follower.
     pub there: Settings,
-    /// See above.
+    /// From the follower.
     pub back: Settings,
     /// The same seed loses the same datagrams.
     pub seed: u64,
 }
 
-/// What a relay has done.
+/// Counts of a relay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Totals {
-    /// Datagrams to the follower, and of these lost on purpose.
+    /// Datagrams to the follower.
     pub there: u64,
-    /// See above.
+    /// Datagrams to the follower, lost on purpose.
     pub there_lost: u64,
-    /// Datagrams back, and of these lost on purpose.
+    /// Datagrams from the follower.
     pub back: u64,
-    /// See above.
+    /// Datagrams from the follower, lost on purpose.
     pub back_lost: u64,
 }
 
-/// A relay that works until it is dropped.
+/// A relay that runs until it is dropped.
 #[derive(Debug)]
 pub struct Relay {
     address: SocketAddr,
@@ -68,10 +68,8 @@ pub struct Relay {
 }
 
 impl Relay {
-    /// Opens the sockets and starts the thread.
-    ///
     /// # Errors
-    /// What the system says, or [`io::ErrorKind::InvalidInput`] with the setting that cannot be.
+    /// I/O errors, or [`io::ErrorKind::InvalidInput`] with the invalid setting.
     pub fn start(settings: RelaySettings) -> io::Result<Self> {
         for direction in [&settings.there, &settings.back] {
             direction.check().map_err(|what| io::Error::new(io::ErrorKind::InvalidInput, what))?;
@@ -85,19 +83,16 @@ impl Relay {
         Ok(Self { address, totals, _thread: thread })
     }
 
-    /// Where it listens.
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// What it has done.
     pub fn totals(&self) -> Totals {
         let [there, there_lost, back, back_lost] = self.totals.each_ref().map(|total| total.load(Relaxed));
         Totals { there, there_lost, back, back_lost }
     }
 }
 
-/// A console.
 struct Client {
     address: SocketAddr,
     socket: Socket,
@@ -111,9 +106,9 @@ struct Work {
     settings: RelaySettings,
     totals: Arc<[AtomicU64; 4]>,
     clients: Vec<Client>,
-    /// Clients so far: each has seeds of its own.
+    /// Number of clients so far: each has its own seeds.
     made: u64,
-    /// When the last datagram came.
+    /// When the last datagram arrived.
     busy_s: f64,
 }
 
@@ -136,7 +131,7 @@ impl Work {
         if is_busy { BUSY } else { REST }
     }
 
-    /// Takes what has arrived; whether there was any.
+    /// Processes received datagrams; returns whether there were any.
     fn take(&mut self, now_s: f64) -> bool {
         let mut buffer = [0; BUFFER_LEN];
         let mut any = false;

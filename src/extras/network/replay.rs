@@ -1,8 +1,8 @@
-//! A window over the numbers of received datagrams: each is accepted once, and none that is older than the window.
+//! A window over the numbers of received datagrams: each is accepted once, and none older than the window.
 
 /// Numbers in the window.
 pub const WINDOW: u64 = 2048;
-/// One more than its length needs: it begins and ends within words.
+/// One more than its length needs, because it begins and ends within words.
 const WORDS: usize = (WINDOW / 64) as usize + 1;
 
 /// Why a number is refused.
@@ -10,11 +10,10 @@ const WORDS: usize = (WINDOW / 64) as usize + 1;
 pub enum Refused {
     /// It has been accepted before.
     Replayed,
-    /// It is older than the window.
     Old,
 }
 
-/// Which numbers have been accepted lately.
+/// The numbers accepted recently.
 #[derive(Clone, Debug)]
 pub struct Window {
     /// One more than the highest accepted number.
@@ -38,7 +37,7 @@ impl Window {
         self.next
     }
 
-    /// Whether the number may be accepted.
+    /// Checks whether the number may be accepted.
     ///
     /// # Errors
     /// [`Refused`] with the cause.
@@ -53,7 +52,7 @@ impl Window {
         if self.seen[word] & bit == 0 { Ok(()) } else { Err(Refused::Replayed) }
     }
 
-    /// Accepts the number; only after its datagram has proven authentic.
+    /// Accepts the number; call it only after its datagram has proven authentic.
     ///
     /// # Errors
     /// As [`Window::check`].
@@ -61,7 +60,7 @@ impl Window {
         self.check(number)?;
         let (word, bit) = place(number);
         if number >= self.next {
-            // Words that the window newly reaches are empty; at most all of them.
+            // Clears the words that enter the window; at most all of them.
             let old_word = self.next.saturating_sub(1) / 64;
             let fresh = (number / 64).saturating_sub(old_word).min(WORDS as u64);
             for back in 0..fresh {

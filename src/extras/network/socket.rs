@@ -1,4 +1,4 @@
-//! A UDP socket that never waits, and tells when a datagram came.
+//! A non-blocking UDP socket that reports when a datagram arrived.
 
 use std::{
     io::{self, ErrorKind},
@@ -10,30 +10,30 @@ use socket2::{Domain, Protocol, Socket as Maker, Type};
 
 /// Buffers of the system, bytes: more than a second of two arms.
 const BUFFER_LEN: usize = 1 << 20;
-/// Marks datagrams as urgent for networks that heed it: expedited forwarding (RFC 3246).
+/// Marks datagrams as urgent for networks that support it: expedited forwarding (RFC 3246).
 const EXPEDITED: u32 = 0xb8;
 
-/// A datagram that has arrived.
+/// A received datagram.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
-    /// Its length, bytes; more than the buffer's if it was cut (on Linux; Windows drops such a one).
+    /// Its length, bytes; more than the buffer's if it was truncated (on Linux; Windows drops such a datagram).
     pub(crate) len: usize,
     pub(crate) from: SocketAddr,
-    /// When it came to this machine, since 1970; `None` where the system does not tell.
+    /// Its arrival at this machine, since 1970; `None` if the system does not report it.
     pub(crate) stamp: Option<Duration>,
 }
 
 impl Arrival {
-    /// When it came, s, by the clock that showed `now_s` at `looked` (since 1970).
+    /// Returns its arrival, s, by the clock that showed `now_s` at `looked` (since 1970).
     pub(crate) fn came_s(&self, now_s: f64, looked: Duration) -> f64 {
         let Some(stamp) = self.stamp else { return now_s };
         let age_s = looked.as_secs_f64() - stamp.as_secs_f64();
-        // What came just now is younger than the look; what is older than this shows that the system's clock was set.
+        // A recent datagram may be slightly newer than `looked`; an older stamp shows that the system's clock was set.
         if (-0.01..1.0).contains(&age_s) { now_s - age_s } else { now_s }
     }
 }
 
-/// Time since 1970: that of the stamps.
+/// Time since 1970: the clock of the stamps.
 pub(crate) fn system_time() -> Duration {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
 }
@@ -45,11 +45,11 @@ pub(crate) struct Socket {
 }
 
 impl Socket {
-    /// Bound to this address; with `to`, for datagrams from and to this one alone.
+    /// Opens a socket at this address; with `to`, only for datagrams from and to that address.
     pub(crate) fn open(at: SocketAddr, to: Option<SocketAddr>) -> io::Result<Self> {
         let socket = Maker::new(Domain::for_address(at), Type::DGRAM, Some(Protocol::UDP))?;
         socket.set_nonblocking(true)?;
-        // What the system does not grant is not needed.
+        // A refusal by the system is harmless.
         socket.set_recv_buffer_size(BUFFER_LEN).ok();
         socket.set_send_buffer_size(BUFFER_LEN).ok();
         if at.is_ipv4() {
@@ -71,9 +71,9 @@ impl Socket {
         self.socket.local_addr()
     }
 
-    /// The next datagram; `None` if none is there.
+    /// Returns the next datagram, if there is one.
     pub(crate) fn receive(&self, buffer: &mut [u8]) -> Option<Arrival> {
-        // An error tells that an earlier datagram of ours was not taken; at most some in a row.
+        // An error may report that an earlier datagram of ours was not accepted; at most a few in a row.
         for _ in 0..4 {
             match stamps::receive(&self.socket, buffer) {
                 Ok(arrival) => return Some(arrival),
@@ -84,7 +84,7 @@ impl Socket {
         None
     }
 
-    /// Whether the system has taken it.
+    /// Returns whether the system has accepted it.
     pub(crate) fn send(&self, datagram: &[u8], to: SocketAddr) -> bool {
         match self.to {
             Some(_) => self.socket.send(datagram).is_ok(),
@@ -93,7 +93,7 @@ impl Socket {
     }
 }
 
-/// The kernel stamps each datagram when it comes, so that its delay does not depend on when somebody looks.
+/// The kernel stamps each datagram on arrival, so that its delay does not depend on when it is read.
 #[cfg(target_os = "linux")]
 #[expect(unsafe_code, reason = "std receives no time stamps")]
 mod stamps {
@@ -110,14 +110,14 @@ mod stamps {
     pub(super) fn switch_on(socket: &socket2::Socket) {
         let on: libc::c_int = 1;
         let len = size_of::<libc::c_int>() as libc::socklen_t;
-        // SAFETY: the pointer and the length are those of `on`. Without stamps, ages are 0.
+        // SAFETY: pointer and length describe `on`. Without stamps, ages are 0.
         unsafe {
             libc::setsockopt(socket.as_raw_fd(), libc::SOL_SOCKET, libc::SO_TIMESTAMPNS, (&raw const on).cast(), len);
         }
     }
 
     pub(super) fn receive(socket: &UdpSocket, buffer: &mut [u8]) -> io::Result<Arrival> {
-        // SAFETY: all of these are valid when they are zero.
+        // SAFETY: all zeros is a valid value of both.
         let (mut name, mut message): (libc::sockaddr_storage, libc::msghdr) = unsafe { (zeroed(), zeroed()) };
         let mut control = [0_u64; 16];
         let mut part = libc::iovec { iov_base: buffer.as_mut_ptr().cast(), iov_len: buffer.len() };
@@ -127,17 +127,17 @@ mod stamps {
         message.msg_iovlen = 1;
         message.msg_control = control.as_mut_ptr().cast();
         message.msg_controllen = size_of::<[u64; 16]>() as _;
-        // SAFETY: every pointer in the message is to memory of the stated length that lives through the call. `MSG_TRUNC` asks for the
-        // true length of a datagram that was cut; no more than the buffer is written.
+        // SAFETY: every pointer in the message is valid for the stated length during the call. `MSG_TRUNC` returns the
+        // true length of a truncated datagram; the kernel writes no more than the buffer holds.
         let len = unsafe { libc::recvmsg(socket.as_raw_fd(), &raw mut message, libc::MSG_TRUNC) };
         let Ok(len) = usize::try_from(len) else { return Err(io::Error::last_os_error()) };
         let from = address(&name).ok_or(io::ErrorKind::InvalidData)?;
         Ok(Arrival { len, from, stamp: stamp(&message) })
     }
 
-    /// When the datagram came, since 1970.
+    /// Returns when the datagram arrived, since 1970.
     fn stamp(message: &libc::msghdr) -> Option<Duration> {
-        // SAFETY: the message is as `recvmsg` left it, with its control data alive; the macro reads within them.
+        // SAFETY: `recvmsg` filled the message, and its control data are alive; the macro reads within them.
         let first = unsafe { libc::CMSG_FIRSTHDR(message).as_ref() }?;
         if (first.cmsg_level, first.cmsg_type) != (libc::SOL_SOCKET, libc::SCM_TIMESTAMPNS) {
             return None;
@@ -193,9 +193,9 @@ mod tests {
             let two = Socket::open(home.parse().unwrap(), Some(one.address().unwrap())).unwrap();
             let mut buffer = [0; 60];
             let mut age_s = 0.0;
-            // The first socket of a system that wants stamps gets them a little later.
+            // The first socket of a system that requests stamps gets them slightly later.
             for _ in 0..50 {
-                // Windows drops what is longer than the buffer; the next one is received by the same call.
+                // Windows drops datagrams longer than the buffer; the next one is received by the same call.
                 for len in if cfg!(windows) { &[100, 60][..] } else { &[100] } {
                     assert!(two.send(&[7; 100][..*len], one.address().unwrap()));
                 }

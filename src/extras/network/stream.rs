@@ -1,4 +1,4 @@
-//! One session's stream: payloads to encrypted datagrams and back, without a socket, thread or clock of its own.
+//! The stream of one session: payloads to encrypted datagrams and back, without its own socket, thread or clock.
 //!
 //! The endpoint feeds it from a socket; a study feeds it from a virtual clock and an impaired line.
 
@@ -19,20 +19,21 @@ use crate::{
     },
 };
 
-/// An echo is used if it is no older than this, s.
+/// Maximum age of an echo that is used, s.
 const EXCHANGE_MAX_S: f64 = 30.0;
-/// Every so many datagrams carry a report, and the first ones all. With a report in every one the clock is known no better: at 20 ms of jitter
-/// its error scatters between 1 and 7 ms with every first, second and fourth.
+/// One datagram of this many carries a report; the first datagrams all do. A report in every datagram does not improve
+/// the clock: at 20 ms of jitter its error scatters between 1 and 7 ms for a report in every first, second and fourth
+/// datagram.
 const REPORT_EVERY: u64 = 2;
 
-/// What a stream is made with.
+/// Settings of a stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamSettings {
-    /// Longest payload, bytes; at most [`PAYLOAD_MAX`].
+    /// Maximum payload, bytes; at most [`PAYLOAD_MAX`].
     pub payload_max: usize,
-    /// Most that is sent, bit/s, with the headers of IPv4 and UDP. 1 Mbit/s per arm.
+    /// Maximum rate sent, bit/s, with the headers of IPv4 and UDP. 1 Mbit/s per arm.
     pub rate_max_bit_s: f64,
-    /// When payloads are handed over.
+    /// Delivery of payloads.
     pub playout: PlayoutSettings,
 }
 
@@ -43,45 +44,44 @@ impl Default for StreamSettings {
 }
 
 impl StreamSettings {
-    /// For the messages of a console and a follower with this many arms: for each 2 Mbit/s, which a bad line fills with copies. A good
-    /// one takes 1 Mbit/s.
+    /// For the messages of a console and a follower with this many arms: 2 Mbit/s for each, which redundancy uses up on
+    /// a bad line. A good line needs 1 Mbit/s.
     pub fn of_arms(arms: usize) -> Self {
         Self { payload_max: PAYLOAD_MAX, rate_max_bit_s: 2e6 * arms as f64, ..Self::default() }
     }
 }
 
-/// What came of sending a payload.
+/// Result of sending a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sent {
     /// A datagram of this length, bytes.
     Datagram(usize),
-    /// The rate's limit leaves no room now: the payload goes with the next datagram.
+    /// The rate limit leaves no room now: the payload goes with the next datagram.
     Held,
-    /// The payload is longer than the settings allow.
+    /// The payload exceeds the maximum of the settings.
     TooLong,
 }
 
 /// Why a datagram of a session was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unaccepted {
-    /// Its encryption is not that of this session.
+    /// It is not encrypted with this session's keys.
     Forged,
-    /// It came before.
+    /// A duplicate.
     Replayed,
-    /// It is older than the window.
     Old,
-    /// Authentic, but it cannot be read.
+    /// Authentic but unreadable.
     Malformed,
 }
 
-/// What an accepted datagram said, besides payloads.
+/// The content of an accepted datagram, other than payloads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accepted {
-    /// Newer than all before it.
+    /// Whether it is newer than all earlier ones.
     pub is_newest: bool,
-    /// Its byte of control, if it has one.
+    /// Its control byte, if it has one.
     pub(crate) control: Option<u8>,
-    /// It proved that a clock has stepped.
+    /// A clock step that it proved.
     pub step: Option<Step>,
 }
 
@@ -98,24 +98,24 @@ pub struct Stream {
     history: History,
     losses: Losses,
     bucket: Bucket,
-    /// Loss of what we send, as the other side tells: share, and share after a lost one.
+    /// Loss of our datagrams, as reported by the other side: fraction, and fraction after a lost one.
     told_loss: (f64, f64),
-    /// Share of what we send that comes after a later one, as the other side tells.
+    /// Fraction of our datagrams that arrive after a later one, as reported by the other side.
     told_overtaken: f64,
-    /// The newest datagram received: when it was sent (µs, their clock) and when it came (s, ours).
+    /// The newest datagram received: when it was sent (µs, their clock) and when it arrived (s, ours).
     newest: Option<(u64, f64)>,
-    /// Byte of control in the last datagram that was sent.
+    /// Control byte in the last datagram that was sent.
     told_control: u8,
     copies: Copies,
     sent: Meter,
     received: Meter,
     held: u64,
-    /// Payloads that no datagram has carried yet.
+    /// Number of payloads that no datagram has carried yet.
     waiting: usize,
     plain: [u8; DATAGRAM_MAX],
 }
 
-/// µs of a time, as it is sent.
+/// Converts a time to µs, the unit on the wire.
 fn micros(now_s: f64) -> u64 {
     (now_s * 1e6).round().clamp(0.0, 281_474_976_710_655.0) as u64
 }
@@ -133,7 +133,8 @@ fn byte(share: f64) -> u8 {
 }
 
 impl Stream {
-    /// A stream with the keys of a handshake; `session` is its number at the other side. All memory is allocated here.
+    /// Makes a stream with the keys of a handshake; `session` is its number at the other side. All memory is allocated
+    /// here.
     pub(crate) fn new(keys: StatelessTransportState, session: u32, settings: &StreamSettings) -> Self {
         let payload_max = settings.payload_max.min(PAYLOAD_MAX);
         Self {
@@ -159,10 +160,10 @@ impl Stream {
         }
     }
 
-    /// Both ends of a session, for a virtual clock: there is no network between them but what the caller makes.
+    /// Makes both ends of a session, for a virtual clock; the caller simulates the network between them.
     ///
     /// # Errors
-    /// [`KeyError::Random`] if the system gives no random numbers.
+    /// [`KeyError::Random`] if the system provides no random numbers.
     ///
     /// ```
     /// use nima_network::{stream::{Sent, Stream, StreamSettings}, wire::DATAGRAM_MAX};
@@ -189,8 +190,9 @@ impl Stream {
         Ok((Self::new(one.keys, one.theirs, settings), Self::new(other.keys, other.theirs, settings)))
     }
 
-    /// Makes a datagram with this payload and the last ones before it; without a payload, one that keeps the session alive.
-    /// `now_s` is the time at which it is sent, s; `control` is the endpoints' byte about who holds the follower, 0 for nothing.
+    /// Writes a datagram with this payload and the last ones before it; without a payload, one that keeps the session
+    /// alive. `now_s` is the time of sending, s; `control` is the endpoints' byte about control of the follower, 0 for
+    /// none.
     pub fn send(&mut self, now_s: f64, payload: Option<&[u8]>, control: u8, out: &mut [u8; DATAGRAM_MAX]) -> Sent {
         if let Some(payload) = payload {
             if !self.history.add(payload, now_s) {
@@ -203,11 +205,11 @@ impl Stream {
         let allowed = self.bucket.level(now_s) as usize;
         let Some(room) = allowed.checked_sub(UDP_LEN + frame) else { return self.hold(payload) };
         let is_limited = room < DATAGRAM_MAX - frame;
-        // Those that were held have not been sent at all.
+        // Held payloads have not been sent at all.
         let (loss, again) = self.told_loss;
         let overtaken = self.told_overtaken;
         let wanted = copies_for(loss + overtaken, f64::max(again, loss + overtaken)).max(self.waiting);
-        // Copies leave room for the next long payload: one that is held goes behind newer ones, and may never fit.
+        // Copies leave room for the next long payload: a held one follows newer ones and might never fit.
         let for_copies = room.saturating_sub(RECORD_MAX + self.history.longest());
         let end = head.length() + room.min(DATAGRAM_MAX - frame);
         let plain = &mut self.plain[head.length()..end];
@@ -229,7 +231,7 @@ impl Stream {
         self.plain[..head.length()].copy_from_slice(&head.bytes()[..head.length()]);
         out[..OUTER_LEN].copy_from_slice(&wire::outer(self.session, self.counter));
         let plain = &self.plain[..head.length() + bytes];
-        // It fails only for datagrams that are too long, and these are not.
+        // It fails only for datagrams that are too long, which these are not.
         let Ok(sealed) = self.keys.write_message(self.counter, plain, &mut out[OUTER_LEN..]) else { return Sent::Held };
         self.counter += 1;
         self.told_control = control;
@@ -239,7 +241,7 @@ impl Stream {
         Sent::Datagram(OUTER_LEN + sealed)
     }
 
-    /// What stands before the payloads of the next datagram. A change of control is told at once.
+    /// Returns the head of the next datagram. A change of control is sent at once.
     fn head(&self, now_s: f64, is_alone: bool, control: u8) -> Head {
         let is_due = self.counter < REPORT_EVERY || self.counter.is_multiple_of(REPORT_EVERY);
         let report = || Report {
@@ -264,10 +266,10 @@ impl Stream {
         Sent::Held
     }
 
-    /// Takes a datagram of this session that came at `arrived_s` (s, our clock).
+    /// Processes a datagram of this session that arrived at `arrived_s` (s, our clock).
     ///
     /// # Errors
-    /// [`Unaccepted`] with the cause; its payloads are not taken then.
+    /// [`Unaccepted`] with the cause; its payloads are then not used.
     pub fn receive(&mut self, datagram: &[u8], arrived_s: f64) -> Result<Accepted, Unaccepted> {
         let Some((_, low, sealed)) = wire::open_outer(datagram) else { return Err(Unaccepted::Malformed) };
         if sealed.len() < HEAD_MIN + TAG_LEN || datagram.len() > DATAGRAM_MAX {
@@ -301,7 +303,8 @@ impl Stream {
         Ok(Accepted { is_newest, control, step })
     }
 
-    /// When a datagram was sent, µs: without a report it says the lower half only, of which the first one with a report gives the rest.
+    /// Returns when a datagram was sent, µs: without a report it contains only the lower half, and the first one with a
+    /// report provides the rest.
     fn when(&self, head: &Head, arrived_s: f64) -> Option<u64> {
         if head.report.is_some() {
             return Some(head.sent_us);
@@ -341,23 +344,23 @@ impl Stream {
         }
     }
 
-    /// Begins anew with the next payload of the other side.
+    /// Restarts with the next payload of the other side.
     pub fn begin(&mut self) {
         self.playout.begin();
     }
 
-    /// Moves the play-out delay; once per tick, before payloads are taken.
+    /// Moves the playout delay; call it once per tick, before payloads are taken.
     pub fn advance(&mut self, now_s: f64) {
         self.playout.advance(now_s);
     }
 
-    /// The next payload that is due.
+    /// Returns the next payload that is due.
     pub fn take(&mut self, now_s: f64) -> Option<Payload<'_>> {
         let offset_s = self.clock.estimate(now_s).map_or(0.0, |estimate| estimate.offset_s);
         self.playout.take(now_s, offset_s)
     }
 
-    /// When the newest datagram came, s.
+    /// Arrival of the newest datagram, s.
     pub fn heard_s(&self) -> Option<f64> {
         self.newest.map(|(_, came_s)| came_s)
     }
@@ -367,12 +370,11 @@ impl Stream {
         &self.clock
     }
 
-    /// Number of payloads given to [`Stream::send`].
     pub const fn payloads(&self) -> u64 {
         self.history.count()
     }
 
-    /// What is measured.
+    /// Returns the measurements.
     pub fn figures(&self, now_s: f64) -> Figures {
         let clock = self.clock.estimate(now_s);
         let offset_s = clock.map_or(0.0, |clock| clock.offset_s);
@@ -396,7 +398,8 @@ impl Stream {
     }
 }
 
-/// Longest payload that can be sent with this many copies at this rate of payloads (1/s) within a limit (bit/s), bytes; `None` if none can.
+/// Returns the maximum payload that can be sent with this many copies at this rate of payloads (1/s) within a limit
+/// (bit/s), bytes; `None` if there is none.
 ///
 /// ```
 /// use nima_network::stream::payload_room;
@@ -408,7 +411,7 @@ impl Stream {
 /// ```
 pub fn payload_room(copies: usize, payloads_per_s: f64, rate_max_bit_s: f64) -> Option<usize> {
     let datagram = ((rate_max_bit_s / 8.0 / payloads_per_s) as usize).min(DATAGRAM_MAX + UDP_LEN);
-    // Every so many heads are long ones.
+    // One head of several is a long one.
     let head = HEAD_MIN + (HEAD_MAX - HEAD_MIN).div_ceil(REPORT_EVERY as usize);
     let room = datagram.checked_sub(UDP_LEN + OUTER_LEN + head + TAG_LEN)?;
     let all =

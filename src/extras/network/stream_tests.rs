@@ -6,7 +6,7 @@ struct Link {
     ends: [Box<Stream>; 2],
     /// From each end to the other.
     lines: [Line; 2],
-    /// Payloads that each end got: number and age (s).
+    /// Payloads received by each end: number and age (s).
     got: [Vec<(u64, f64)>; 2],
     steps: [u32; 2],
     /// The second end's clock minus the true one, s.
@@ -89,7 +89,7 @@ fn a_good_line_loses_nothing_and_knows_its_delay() {
         let true_s = if i == 0 { 100.0 } else { -100.0 };
         assert!((clock.offset_s - true_s).abs() < 0.2e-3 && (clock.bound_s - 5e-3).abs() < 0.2e-3, "{clock:?}");
         assert!(figures.sent.rate_bit_s < 1.001e6, "{:?}", figures.sent);
-        // Whoever takes it in the tick in which it is due adds up to one.
+        // Taking it in the tick in which it is due adds up to one tick.
         let steady = link.got[i].iter().skip(2000);
         assert!(steady.clone().all(|&(_, age_s)| (0.0..1.4e-3).contains(&(age_s - playout_s))), "{playout_s}");
     }
@@ -127,12 +127,12 @@ fn the_limit_of_the_rate_is_kept_and_named() {
             rate_bit_s < rate_max_bit_s + 1e3 && rate_bit_s > 0.8 * rate_max_bit_s,
             "{rate_bit_s} of {rate_max_bit_s}"
         );
-        // What could not be sent alone goes with the next.
+        // Payloads that could not be sent alone go with the next.
         assert!(len == 40 || figures.held > 100, "{figures:?}");
     }
 }
 
-/// What a follower sends: its force in every tick, parameters with every tenth.
+/// A follower's data: its force in every tick, parameters with every tenth.
 #[test]
 fn long_payloads_arrive_although_the_rate_has_no_room_for_their_copies() {
     let settings = Settings { delay_s: 20e-3, loss: Loss::Independent { share: 0.3 }, ..Settings::default() };
@@ -204,7 +204,7 @@ fn after_an_outage_the_stream_goes_on_where_it_is() {
     let figures = link.figures(0);
     assert!((7000..8100).contains(&figures.counts.lost), "{:?}", figures.counts);
     assert!(figures.copies.wanted <= 3, "copies do not help: {:?}", figures.copies);
-    assert!(link.got[0].iter().all(|&(_, age_s)| age_s < 25e-3), "nothing old is handed over");
+    assert!(link.got[0].iter().all(|&(_, age_s)| age_s < 25e-3), "no old payload is delivered");
     assert!(figures.playout_s.unwrap() < 21e-3, "{figures:?}");
     assert_eq!(figures.steps, 0);
 }
@@ -220,11 +220,11 @@ fn directions_can_differ() {
     assert!(one.loss > 0.08 && one.loss_there < 0.01 && other.loss < 0.01 && other.loss_there > 0.08);
     let clock = one.clock.unwrap();
     assert!((clock.round_trip_s - 40e-3).abs() < 2e-3, "{clock:?}");
-    // Nobody can tell one direction from the other; the bound says how far off it may be.
+    // The two directions cannot be distinguished; the bound states the maximum error.
     assert!((clock.offset_s - 100.0).abs() <= clock.bound_s, "{clock:?}");
 }
 
-/// Datagrams of a session, and what happens to forged, changed and repeated ones: how many were accepted.
+/// Sends forged, changed and repeated datagrams of a session; returns how many were accepted.
 fn attack(rounds: u32, seed: u64) -> u64 {
     let (mut one, mut other) = Stream::pair(&stream(1e9)).unwrap();
     let mut rng = fastrand::Rng::with_seed(seed);
@@ -261,7 +261,7 @@ fn attack(rounds: u32, seed: u64) -> u64 {
         }
         accepted += u64::from(other.receive(&forged, now_s).is_ok());
     }
-    assert!(payloads + 20 >= rounds / 100, "the stream goes on: {payloads}");
+    assert!(payloads + 20 >= rounds / 100, "the stream continues: {payloads}");
     accepted
 }
 
@@ -282,7 +282,7 @@ fn fuzz_datagrams() {
     nima_testing::fuzz::rounds(|seed| assert_eq!(attack(20_000, seed), 0));
 }
 
-/// What to expect of a line: prints the table of docs/network.md.
+/// What to expect of a line: prints the table of docs/results/stream.md.
 #[test]
 #[ignore = "ten seconds: ./dev figures"]
 fn figures_of_lines() {

@@ -1,53 +1,54 @@
 //! The format of a datagram.
 //!
-//! Every datagram begins with the version of the protocol and its kind. Those of a handshake go on with [`MAGIC`] and a number that
-//! their sender chose, so that an answer can be told from one that somebody made up who cannot see the question; these twelve bytes and
-//! a refusal stay the same in every version. Those of a session go on with the number of the session at the receiver and the lower half
-//! of their own number; what follows is encrypted: a [`Head`] with the time stamps, then the payloads, newest first.
+//! Every datagram begins with the version of the protocol and its kind. Those of a handshake continue with [`MAGIC`]
+//! and a number chosen by their sender, so that an answer cannot be forged without seeing the request; these fourteen
+//! bytes and a refusal stay the same in every version. Those of a session continue with the number of the session at
+//! the receiver and the lower half of their own number; the rest is encrypted: a [`Head`] with the time stamps, then
+//! the payloads, newest first.
 //!
 //! Numbers are little-endian.
 
-/// Version of the protocol. Two machines of different versions refuse each other.
+/// Version of the protocol. Two machines with different versions refuse each other.
 pub const VERSION: u8 = 3;
-/// Longest datagram, bytes: passes through every usual network in one piece.
+/// Maximum datagram, bytes: passes through every usual network in one piece.
 pub const DATAGRAM_MAX: usize = 1200;
-/// What stands before the encrypted part of a datagram of a session, bytes.
+/// Length of the unencrypted part of a session's datagram, bytes.
 pub const OUTER_LEN: usize = 10;
-/// What the encryption adds, bytes.
+/// Length added by the encryption, bytes.
 pub const TAG_LEN: usize = 16;
 /// Length of the shortest [`Head`], bytes: without a report.
 pub const HEAD_MIN: usize = 8;
 /// Length of the longest, with report and echo, bytes.
 pub const HEAD_MAX: usize = 22;
-/// What stands before a payload at most, bytes.
+/// Maximum length of a payload's header, bytes.
 pub const RECORD_MAX: usize = 4;
-/// Longest payload, bytes.
+/// Maximum payload, bytes.
 pub const PAYLOAD_MAX: usize = DATAGRAM_MAX - OUTER_LEN - TAG_LEN - HEAD_MAX - RECORD_MAX;
-/// What IPv4 and UDP add to each datagram, bytes; it counts for the limit of the rate.
+/// Length that IPv4 and UDP add to each datagram, bytes; it counts for the rate limit.
 pub const UDP_LEN: usize = 28;
-/// Most payloads in one datagram.
+/// Maximum number of payloads in one datagram.
 pub const COPIES_MAX: usize = 32;
-/// An older payload is not carried again, s.
+/// An older payload is not sent again, s.
 pub const AGE_MAX_S: f64 = 0.65;
 
 /// In every datagram of a handshake, after version and kind.
 pub const MAGIC: [u8; 4] = *b"nima";
-/// Where the number that a handshake's sender chose begins.
+/// Offset of the number chosen by a handshake's sender.
 const TOKEN_AT: usize = 6;
-/// What stands before the content of a datagram of a handshake, bytes.
+/// Length of the header of a handshake's datagram, bytes.
 pub const HANDSHAKE_LEN: usize = TOKEN_AT + 8;
-/// Shortest first datagram of a handshake, bytes: longer than every answer to a stranger, so that nobody can use this machine to
-/// send more to somebody else than he sends himself.
+/// Minimum first datagram of a handshake, bytes: longer than every answer to a stranger, so that this machine cannot be
+/// abused to amplify an attack on a third party.
 pub const HELLO_LEN: usize = 128;
-/// Longest datagram of a handshake, bytes.
+/// Maximum datagram of a handshake, bytes.
 pub const HANDSHAKE_MAX: usize = 256;
 /// Unit of a payload's age, s.
 const AGE_UNIT_S: f64 = 2e-5;
 
-/// What a datagram is for.
+/// Kind of a datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A console asks for a cookie.
+    /// A console requests a cookie.
     Hello,
     /// The cookie.
     Cookie,
@@ -80,21 +81,22 @@ impl Kind {
     }
 }
 
-/// Why a datagram was not taken.
+/// Why a datagram was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unreadable {
-    /// Not of this protocol, cut, or with numbers that contradict each other.
+    /// Not of this protocol, truncated, or inconsistent.
     Malformed,
-    /// Of a handshake of another version of this protocol.
+    /// A handshake of another version of this protocol.
     ForeignVersion(u8),
-    /// As long and of the kind as one of a session, but of another version. It is never answered.
+    /// In length and kind like a session's datagram, but of another version. It is never answered.
     ForeignData(u8),
 }
 
-/// Version and kind of a datagram.
+/// Returns the kind of a datagram.
 ///
 /// # Errors
-/// [`Unreadable`] if it is none of this version. Only a datagram with [`MAGIC`] is of a handshake of another version: random bytes are not.
+/// [`Unreadable`] if it is not of this version. Only a datagram with [`MAGIC`] counts as a handshake of another
+/// version: random bytes do not.
 pub fn kind(datagram: &[u8]) -> Result<Kind, Unreadable> {
     let [version, kind, ..] = *datagram else { return Err(Unreadable::Malformed) };
     let kind = Kind::ALL.into_iter().find(|known| known.number() == kind);
@@ -111,12 +113,12 @@ pub fn kind(datagram: &[u8]) -> Result<Kind, Unreadable> {
     }
 }
 
-/// The number that the sender of a handshake's datagram chose.
+/// Returns the number chosen by the sender of a handshake's datagram.
 pub fn token(datagram: &[u8]) -> Option<u64> {
     datagram.get(TOKEN_AT..HANDSHAKE_LEN)?.try_into().ok().map(u64::from_le_bytes)
 }
 
-/// The first bytes of a datagram of a handshake.
+/// Returns the header of a handshake's datagram.
 pub fn handshake(kind: Kind, token: u64) -> [u8; HANDSHAKE_LEN] {
     let mut bytes = [0; HANDSHAKE_LEN];
     bytes[0] = VERSION;
@@ -126,7 +128,7 @@ pub fn handshake(kind: Kind, token: u64) -> [u8; HANDSHAKE_LEN] {
     bytes
 }
 
-/// The first bytes of a datagram of a session: the number of the session at the receiver, and the datagram's.
+/// Returns the header of a session's datagram: the number of the session at the receiver, and the datagram's number.
 pub fn outer(session: u32, counter: u64) -> [u8; OUTER_LEN] {
     let mut bytes = [0; OUTER_LEN];
     bytes[0] = VERSION;
@@ -136,7 +138,7 @@ pub fn outer(session: u32, counter: u64) -> [u8; OUTER_LEN] {
     bytes
 }
 
-/// The number of the session, the lower half of the datagram's number, and the encrypted part.
+/// Returns the number of the session, the lower half of the datagram's number, and the encrypted part.
 pub fn open_outer(datagram: &[u8]) -> Option<(u32, u32, &[u8])> {
     let (outer, sealed) = datagram.split_at_checked(OUTER_LEN)?;
     let session = u32::from_le_bytes(outer.get(2..6)?.try_into().ok()?);
@@ -144,7 +146,7 @@ pub fn open_outer(datagram: &[u8]) -> Option<(u32, u32, &[u8])> {
     Some((session, counter, sealed))
 }
 
-/// The number with these lower bits that is nearest to `near`.
+/// Returns the number with these lower bits that is nearest to `near`.
 pub const fn whole(near: u64, low: u32) -> u64 {
     let ahead = low.wrapping_sub(near as u32).cast_signed();
     near.saturating_add_signed(ahead as i64)
@@ -156,46 +158,46 @@ pub const fn whole24(near: u64, low: u32) -> u64 {
     near.saturating_add_signed(ahead as i64)
 }
 
-/// What stands before the payloads, encrypted.
+/// The encrypted header before the payloads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Head {
-    /// When the datagram was sent, by its sender's clock, µs: 48 bits with a report, else the lower 32.
+    /// When the datagram was sent, by its sender's clock, µs: 48 bits with a report, otherwise the lower 32.
     pub sent_us: u64,
-    /// What need not be told in every datagram.
+    /// Present only in some datagrams.
     pub report: Option<Report>,
     /// Number of the newest payload, lower 24 bits.
     pub newest: u32,
-    /// Number of payloads.
     pub count: u8,
 }
 
-/// What every few datagrams tell: what the clocks are compared by, and the losses.
+/// Data that only some datagrams contain: for comparing the clocks, and the losses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Lower half of `sent_us` of the last datagram that the sender received, and how long before `sent_us` it came, µs.
+    /// Lower half of `sent_us` of the last datagram that the sender received, and the time between its arrival and
+    /// `sent_us`, µs.
     pub echo: Option<(u32, u32)>,
-    /// Share of the datagrams that its sender missed lately, in 255ths.
+    /// Fraction of the datagrams that its sender recently missed, in 255ths.
     pub loss: u8,
-    /// Of the datagrams after a missed one, the share that was missed too, in 255ths.
+    /// Fraction of the datagrams after a missed one that were missed too, in 255ths.
     pub loss_again: u8,
-    /// Share of the datagrams that came after a later one, in 255ths.
+    /// Fraction of the datagrams that arrived after a later one, in 255ths.
     pub overtaken: u8,
-    /// Who holds the follower, and what is asked or answered: [`crate::control`].
+    /// Control of the follower, requests and answers: [`crate::control`].
     pub control: u8,
 }
 
-/// In the first byte of a head, beside the number of payloads.
+/// Flag in the first byte of a head, next to the number of payloads.
 const REPORTS: u8 = 0x80;
 const ECHOES: u8 = 0x40;
 
 impl Head {
-    /// Its length, bytes.
+    /// Bytes.
     pub fn length(&self) -> usize {
         let echo = |report: &Report| if report.echo.is_some() { 8 } else { 0 };
         HEAD_MIN + self.report.as_ref().map_or(0, |report| 6 + echo(report))
     }
 
-    /// Its bytes; the first [`length`](Self::length) of these.
+    /// Returns its bytes; only the first [`length`](Self::length) are used.
     pub fn bytes(&self) -> [u8; HEAD_MAX] {
         let mut bytes = [0; HEAD_MAX];
         let mut end = 1;
@@ -220,7 +222,7 @@ impl Head {
         bytes
     }
 
-    /// From its bytes, with what follows them.
+    /// Parses a head; also returns the bytes after it.
     pub fn from_bytes(bytes: &[u8]) -> Option<(Self, &[u8])> {
         let ([first, sent0, sent1, sent2, sent3, newest @ ..], mut rest) = bytes.split_first_chunk::<HEAD_MIN>()?;
         let mut sent_us = u64::from(u32::from_le_bytes([*sent0, *sent1, *sent2, *sent3]));
@@ -245,10 +247,10 @@ impl Head {
     }
 }
 
-/// Length of a payload that stands in a datagram by its place only.
+/// Length value of a payload that is left out of the datagram.
 const LEFT_OUT: u16 = 0x7fff;
 
-/// Length of a number below 2^15, bytes: below 128 one byte, else two, the first with its highest bit set.
+/// Length of a number below 2^15, bytes: below 128 one byte, otherwise two, the first with its highest bit set.
 const fn number_len(number: u16) -> usize {
     if number < 0x80 { 1 } else { 2 }
 }
@@ -270,10 +272,10 @@ fn number(bytes: &[u8]) -> Option<(u16, &[u8])> {
     Some((u16::from_be_bytes([first & 0x7f, low]), rest))
 }
 
-/// One payload as it stands in a datagram.
+/// One payload in a datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record<'a> {
-    /// How long before the datagram it was first sent, s.
+    /// Time between its first sending and the datagram, s.
     pub age_s: f64,
     /// Its content; `None` if it is left out here, because it was sent before and there is no room for it.
     pub bytes: Option<&'a [u8]>,
@@ -286,7 +288,7 @@ impl Record<'_> {
         number_len(len) + number_len(age(age_s)) + payload
     }
 
-    /// Writes it at the beginning of `room`; the number of bytes, or `None` if it does not fit.
+    /// Writes it at the beginning of `room`; returns the number of bytes, or `None` if it does not fit.
     pub fn write(&self, room: &mut [u8]) -> Option<usize> {
         let bytes = self.bytes.unwrap_or(&[]);
         let len = if self.bytes.is_some() { u16::try_from(bytes.len()).ok()? } else { LEFT_OUT };
@@ -307,7 +309,7 @@ fn age(age_s: f64) -> u16 {
     (age_s / AGE_UNIT_S).round().clamp(0.0, f64::from(LEFT_OUT)) as u16
 }
 
-/// The first payload in these bytes, and what follows it.
+/// Returns the first payload in these bytes, and the bytes after it.
 pub fn record(bytes: &[u8]) -> Option<(Record<'_>, &[u8])> {
     let (len, rest) = number(bytes)?;
     let (age, rest) = number(rest)?;

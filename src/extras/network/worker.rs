@@ -1,4 +1,4 @@
-//! A thread beside the loop's, for as long as what it works for.
+//! A thread next to the loop's, for as long as its owner exists.
 
 use std::{
     io,
@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A thread that takes turns until this is dropped, which waits for the end of the last one.
+/// A thread that takes turns until this is dropped; dropping waits for the current turn.
 #[derive(Debug)]
 pub(crate) struct Worker {
     ends: Arc<AtomicBool>,
@@ -18,7 +18,7 @@ pub(crate) struct Worker {
 }
 
 impl Worker {
-    /// Starts it; `turn` gets the time since then, s, and returns how long to rest before the next turn.
+    /// Starts the thread; `turn` gets the time since then, s, and returns how long to wait before the next turn.
     pub(crate) fn start(name: &str, mut turn: impl FnMut(f64) -> Duration + Send + 'static) -> io::Result<Self> {
         let ends = Arc::new(AtomicBool::new(false));
         let theirs = Arc::clone(&ends);

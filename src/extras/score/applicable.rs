@@ -1,9 +1,8 @@
-//! Which measures a kind of task can have: a form offers these.
+//! The measures that a kind of task can have, for selection in a form.
 
 use crate::Definition;
 use nima_core::task::TaskKind;
 
-/// Measures of one kind of task.
 const PEG_TRANSFER: [&str; 12] = [
     "time_to_first_grasp_s",
     "lifts",
@@ -20,9 +19,9 @@ const PEG_TRANSFER: [&str; 12] = [
 ];
 const PALPATION: [&str; 4] = ["lumps_found", "lumps_false", "lumps_missed", "lump_peak_force_n"];
 const WIRE_LOOP: [&str; 2] = ["wire_touches", "wire_touch_time_s"];
-/// Those of a task that can be completed.
+/// Measures of a task that can be completed.
 const WITH_END: [&str; 3] = ["completion_time_s", "time_over_reference", "out_of_view_share"];
-/// Those that compare both hands.
+/// Measures that compare both hands.
 const OF_BOTH: [&str; 4] = ["transfers", "force_share", "bimanual_dexterity", "both_move_share"];
 
 impl Definition {
@@ -49,7 +48,7 @@ mod tests {
     use super::*;
     use crate::{HandSample, MEASURES, Sample, Scorer, TaskFile};
 
-    /// The measures that a trial has in which everything happens.
+    /// Returns the measures of a trial with every kind of event.
     fn measured(kind: TaskKind) -> Vec<&'static str> {
         let task = format!("name = 'x'\nkind = {}\nlumps = 2", serde_json::to_string(&kind).unwrap());
         let mut scorer = Scorer::new(&TaskFile::from_toml(&task).unwrap());
@@ -96,7 +95,7 @@ mod tests {
         for kind in [TaskKind::Free, TaskKind::PegTransfer, TaskKind::Palpation, TaskKind::WireLoop] {
             let has = measured(kind);
             for definition in &MEASURES {
-                // Jaws and the way between events are known in any kind of trial here, and a free one is ended by hand.
+                // Jaws and paths between events are known in any kind of trial here, and a free one is ended by hand.
                 let known_here = ["path_economy", "jaw_openings", "jaw_openings_per_min", "completion_time_s"];
                 if !known_here.contains(&definition.id) {
                     assert_eq!(

@@ -1,6 +1,6 @@
-//! Every measure: id, unit, definition and source. `docs/score.md` says the same; a test compares them.
+//! Every measure: id, unit, definition and source. `docs/reference/measures.md` is generated from them.
 
-/// What a measure is.
+/// Definition of a measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Definition {
     /// Name in JSON, with the unit if it has one.
@@ -11,7 +11,7 @@ pub struct Definition {
     pub unit: &'static str,
     /// How it is computed.
     pub definition: &'static str,
-    /// Who defined it; `docs/score.md` lists the papers.
+    /// Origin of the definition; `docs/score.md` lists the papers.
     pub source: &'static str,
     /// Whether it is measured for each hand.
     pub per_hand: bool,
@@ -92,7 +92,7 @@ pub const MEASURES: [Definition; 59] = [
         "out_of_view_share",
         "1",
         "How much of the time the tip was out of the picture.",
-        "Time with the tip outside the endoscope's picture over the time in which the hand is known.",
+        "Time with the tip outside the endoscope image over the time in which the hand is known.",
         "doi:10.1007/s00464-017-5873-6, table 2 (time outside camera view)",
     ),
     trial("lifts", "count", "How often a ring was lifted off a peg.", "Events.", "this project"),
@@ -135,7 +135,7 @@ pub const MEASURES: [Definition; 59] = [
         "rings_knocked_off",
         "count",
         "How often a ring was pushed off its peg.",
-        "Events: a ring that nobody held left its peg.",
+        "Events: a ring that was not held left its peg.",
         "this project",
     ),
     trial("lumps_found", "count", "How many lumps were found.", "Different lumps that were marked.", "this project"),

@@ -1,15 +1,15 @@
-//! How straight the way between grasps and places was.
+//! Straightness of the path between grasps and placements.
 
 use crate::{
     motion::{Motion, path_m},
     signal::RATE_HZ,
 };
 
-/// A way that is shorter, m, is noise.
+/// A shorter path, m, is noise.
 const LEAST_PATH_M: f64 = 1e-3;
 
-/// Straight lines between the places at these times (s from the beginning, in order) over the way that the tip took; `None` if it took none.
-/// A leg with a gap in it is left out.
+/// Straight lines between the positions at these times (s from the beginning, in order) over the tip's path length;
+/// `None` if it is zero. A segment with a gap in it is left out.
 pub(crate) fn path_economy(motion: &Motion<'_>, times_s: &[f64]) -> Option<f64> {
     let mut straight_m = 0.0;
     let mut way_m = 0.0;

@@ -1,4 +1,4 @@
-//! Volume of the ellipsoid that holds 95 % of a cloud of vectors.
+//! Volume of the ellipsoid that contains 95 % of a cloud of vectors.
 
 use std::f64::consts::PI;
 

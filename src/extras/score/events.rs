@@ -1,10 +1,11 @@
-//! Counts of what happened.
+//! Counts of events.
 
 use std::collections::BTreeSet;
 
 use nima_core::{SIDES, Side, task::Event};
 
-/// Moments that are kept for the ways between them, and lumps that are told apart; more is a fault of the input.
+/// Maximum number of times stored for the paths between them, and of lumps distinguished; more indicate a fault of the
+/// input.
 const MOST: usize = 10_000;
 
 /// Counts of one trial; times in s from its beginning.
@@ -20,16 +21,16 @@ pub(crate) struct Events {
     pub false_marks: u32,
     pub touches: u32,
     found: BTreeSet<usize>,
-    /// When each hand took or let go a ring.
+    /// When each hand grasped or released a ring.
     handled_s: [Vec<f64>; SIDES],
-    /// When each hand marked a lump that is one.
+    /// When each hand correctly marked a lump.
     marked_s: [Vec<f64>; SIDES],
     touching_since_s: [Option<f64>; SIDES],
     touched_s: f64,
 }
 
 impl Events {
-    /// An event at `t_s`; those that begin and end the trial are the scorer's.
+    /// Counts an event at `t_s`; the scorer handles those that begin and end the trial.
     pub(crate) fn take(&mut self, t_s: f64, event: Event) {
         match event {
             Event::Begun | Event::Ended | Event::Aborted => {}
@@ -91,12 +92,12 @@ impl Events {
         }
     }
 
-    /// Different lumps that were marked.
+    /// Number of different lumps that were marked.
     pub(crate) fn found(&self) -> usize {
         self.found.len()
     }
 
-    /// When this hand took or let go a ring, in order, s.
+    /// Returns when this hand grasped or released a ring, in order, s.
     pub(crate) fn handled_s(&self, side: Side) -> Vec<f64> {
         let mut times_s = self.handled_s[side.index()].clone();
         times_s.sort_by(f64::total_cmp);
@@ -107,7 +108,7 @@ impl Events {
         &self.marked_s[side.index()]
     }
 
-    /// Time in touch with the wire until the end of the trial, s.
+    /// Contact time with the wire until the end of the trial, s.
     pub(crate) fn touched_s(&self, end_s: f64) -> f64 {
         let open = self.touching_since_s.iter().flatten().map(|since_s| (end_s - since_s).max(0.0));
         self.touched_s + open.sum::<f64>()

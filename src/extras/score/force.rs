@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::{ellipsoid::Cloud, signal::RATE_HZ, task::TaskFile};
 
-/// An excursion over the threshold ends below this share of it, so that noise at the threshold counts once.
+/// An excursion over the threshold ends below this fraction of it, so that noise at the threshold counts once.
 const BACK: f64 = 0.9;
 
 /// Sums over the raw samples; each one counts for half of the time to its neighbours (trapezoid).
@@ -66,7 +66,7 @@ impl Forces {
         }
     }
 
-    /// A force at `t_s` from the beginning; no time is counted for a step that is longer than `longest_step_s`.
+    /// Adds a force at `t_s` from the beginning; a step longer than `longest_step_s` adds no time.
     pub(crate) fn take(&mut self, t_s: f64, force_n: Vector3<f64>, longest_step_s: f64) {
         let size_n = force_n.norm();
         self.peak_n = Some(self.peak_n.map_or(size_n, |peak_n| peak_n.max(size_n)));
@@ -111,7 +111,7 @@ impl Forces {
         self.peak_n
     }
 
-    /// Largest force from `from_s` to `to_s`, N.
+    /// Maximum force from `from_s` to `to_s`, N.
     pub(crate) fn peak_between_n(&self, from_s: f64, to_s: f64) -> Option<f64> {
         let [from, to] = [from_s, to_s].map(|t_s| (t_s.max(0.0) * RATE_HZ) as usize);
         let to = (to + 1).min(self.peaks_n.len());

@@ -1,9 +1,9 @@
-//! Whether a trainee is shown the result of a trial: always, never, or less often as skill comes.
+//! Whether a trainee is shown the result of a trial: always, never, or less often with growing skill.
 //!
-//! Results after every trial guide a beginner, but those who practise with fewer of them learn more: they do not come to depend on them (guidance
-//! hypothesis; Salmoni, Schmidt and Walter 1984, Psychol. Bull. 95:355-386). In two of the three experiments of Winstein and Schmidt 1990
-//! (J. Exp. Psychol. Learn. Mem. Cogn. 16:677-691) results became rarer over practice, by a schedule. Here they do so with the skill that the
-//! trainee's own trials show.
+//! Results after every trial guide a beginner, but those who practise with fewer results learn more, because they do
+//! not come to depend on them (guidance hypothesis; Salmoni, Schmidt and Walter 1984, Psychol. Bull. 95:355-386). In
+//! two of the three experiments of Winstein and Schmidt 1990 (J. Exp. Psychol. Learn. Mem. Cogn. 16:677-691) results
+//! became rarer over practice, by a schedule. Here they become rarer with the skill shown by the trainee's own trials.
 
 use std::collections::VecDeque;
 
@@ -11,29 +11,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Criterion, Score};
 
-/// Trials by which skill is judged.
+/// Number of trials by which skill is judged.
 const JUDGED: u32 = 4;
-/// Results per trial of somebody without skill and of one who meets the criterion every time, in parts of `2 * JUDGED`.
+/// Results per trial for a beginner and, halved, for a trainee who always meets the criterion, in units of `1 / (2 *
+/// JUDGED)`.
 const ALL: u32 = 2 * JUDGED;
 
-/// When the result of a trial is shown to the trainee. The force is no part of it.
+/// When the result of a trial is shown to the trainee. Independent of the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Feedback {
     /// After every trial.
     #[default]
     Always,
-    /// After every trial at first, after half of them when skill has come.
+    /// After every trial at first, after half of them with full skill.
     Fades,
-    /// After none.
     Never,
 }
 
 /// Follows the trials of one person and decides after each whether its result is shown.
 ///
-/// With [`Feedback::Fades`] results are shown after a share of `1 - m / 8` of the trials, where `m` is how many of the last four (fewer at the
-/// beginning) met the criterion: all of them for a beginner, half of them for who meets it every time. Which ones follows from the trials
-/// alone: the same trials give the same answer.
+/// With [`Feedback::Fades`] results are shown after the fraction `1 - m / 8` of the trials, where `m` is how many of
+/// the last four (fewer at the beginning) met the criterion: all of them for a beginner, half of them for a trainee who
+/// always meets it. The choice depends only on the trials: the same trials give the same answer.
 ///
 /// ```
 /// use nima_score::{Criterion, Feedback, Guidance};
@@ -50,25 +50,25 @@ pub struct Guidance {
     criterion: Criterion,
     /// Whether each of the last trials met the criterion.
     met: VecDeque<bool>,
-    /// What part of a result is due, in parts of [`ALL`].
+    /// The accumulated fraction of a result that is due, in parts of [`ALL`].
     due: u32,
     shown: bool,
 }
 
 impl Guidance {
-    /// Before the first trial.
     pub fn new(feedback: Feedback, criterion: Criterion) -> Self {
         let met = VecDeque::with_capacity(JUDGED as usize + 1);
         Self { feedback, criterion, met, due: 0, shown: feedback != Feedback::Never }
     }
 
-    /// Takes the score of the next trial; whether it is shown.
+    /// Adds the score of the next trial; returns whether its result is shown.
     pub fn take(&mut self, score: &Score) -> bool {
         let drops = score.value("drops_out_of_view").unwrap_or(0.0);
         self.take_trial(score.value("completion_time_s"), drops as u32)
     }
 
-    /// Takes the next trial by its completion time (s; `None` if it was not completed) and its drops out of view; whether its result is shown.
+    /// Adds the next trial by its completion time (s; `None` if it was not completed) and its drops out of view;
+    /// returns whether its result is shown.
     pub fn take_trial(&mut self, completion_time_s: Option<f64>, drops_out_of_view: u32) -> bool {
         self.met.push_back(self.criterion.is_met(completion_time_s, drops_out_of_view));
         if self.met.len() > JUDGED as usize {
@@ -91,7 +91,7 @@ impl Guidance {
         self.shown
     }
 
-    /// The share of the trials whose results are shown, at the skill of now.
+    /// The fraction of the trials whose results are shown, at the current skill.
     pub fn frequency(&self) -> f64 {
         match self.feedback {
             Feedback::Always => 1.0,

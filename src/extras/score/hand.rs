@@ -1,4 +1,4 @@
-//! Everything that is kept of one hand during a trial.
+//! All data of one hand during a trial.
 
 use crate::{
     HandSample, TaskFile,
@@ -51,7 +51,7 @@ impl Hand {
         }
     }
 
-    /// A sample at `t_s` from the beginning; whether something in it could not be used.
+    /// Adds a sample at `t_s` from the beginning; returns whether a part of it was unusable.
     pub(crate) fn take(&mut self, t_s: f64, sample: &HandSample) -> bool {
         let Usable { tip_m, jaw_rad, force_n, rendered_n, spoilt } = sample.usable();
         if let Some(tip_m) = tip_m {

@@ -1,6 +1,6 @@
-//! How often a jaw was opened.
+//! Number of jaw openings.
 
-/// Open above this, closed below that, rad: 20 and 10 degrees, so that noise and play count nothing.
+/// Open above the first, closed below the second, rad: 20 and 10 degrees, so that noise and play do not count.
 const OPEN_RAD: f64 = 0.35;
 const CLOSED_RAD: f64 = 0.175;
 

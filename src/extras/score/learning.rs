@@ -2,17 +2,18 @@
 
 use serde::Serialize;
 
-/// Fewest trials with a time for a curve. A curve has four parameters with its scatter, and `AICc` divides by the trials less five.
+/// Minimum number of trials with a time for a curve. A curve has four parameters including its scatter, and `AICc`
+/// divides by the trials minus five.
 pub const LEAST_TRIALS: usize = 6;
 
-/// Longest time, s, and largest number of trials that are taken for such.
+/// Maximum time, s, and maximum number of trials that are accepted.
 const LONGEST_S: f64 = 1e6;
 const MOST_TRIALS: usize = 10_000;
-/// The plateau is reached within this share of it: 10 %, as in Feldman et al. 2009 (Surgery 146:381-386).
+/// The plateau is reached within this fraction of it: 10 %, as in Feldman et al. 2009 (Surgery 146:381-386).
 const WITHIN: f64 = 0.10;
-/// A plateau that is farther away is none, trials.
+/// A plateau that would be reached later does not count, trials.
 const FARTHEST: f64 = 1000.0;
-/// Values of the rate that are tried before the best one is refined.
+/// Number of rates tested before the best one is refined.
 const GRID: u32 = 120;
 
 /// Form of a learning curve.
@@ -27,7 +28,8 @@ pub enum Shape {
     Flat,
 }
 
-/// The curve that describes a sequence of completion times best, by the least `AICc` (Hurvich and Tsai 1989, Biometrika 76:297-307).
+/// The curve that fits a sequence of completion times best, by the minimum `AICc` (Hurvich and Tsai 1989, Biometrika
+/// 76:297-307).
 ///
 /// ```
 /// use nima_score::{LearningCurve, Shape};
@@ -41,23 +43,22 @@ pub enum Shape {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LearningCurve {
-    /// The form.
     pub shape: Shape,
-    /// Time that is approached, s: the plateau.
+    /// The asymptotic time, s: the plateau.
     pub asymptote_s: f64,
-    /// What the first trial is slower than that, s.
+    /// How much slower the first trial is, s.
     pub gain_s: f64,
-    /// Exponential: trials in which the rest falls to 1/e. Power: the exponent. Flat: 0.
+    /// Exponential: trials in which the remainder falls to 1/e. Power: the exponent. Flat: 0.
     pub rate: f64,
     /// Root mean square of the residuals, s.
     pub rms_s: f64,
     /// Akaike's criterion with the correction for few trials.
     pub aicc: f64,
-    /// Trials that the curve was fitted to.
+    /// Number of fitted trials.
     pub fitted: usize,
-    /// The first trial (from 1) that the curve has within 10 % of the plateau; `None` if that is farther than 1000 trials.
+    /// The first trial (from 1) in which the curve is within 10 % of the plateau; `None` if that is beyond 1000 trials.
     pub trials_to_plateau: Option<u32>,
-    /// That trial is among those that were made; otherwise the plateau is only extrapolated.
+    /// Whether that trial was actually made; otherwise the plateau is extrapolated.
     pub plateau_seen: bool,
 }
 
@@ -65,8 +66,8 @@ pub struct LearningCurve {
 type Points = [(f64, f64)];
 
 impl LearningCurve {
-    /// Fits the completion times of all trials in order, s. A NaN stands for a trial without a time: it counts in the numbering and is not
-    /// fitted. `None` for fewer than [`LEAST_TRIALS`] times.
+    /// Fits the completion times of all trials in order, s. NaN represents a trial without a time: it counts in the
+    /// numbering and is not fitted. `None` for fewer than [`LEAST_TRIALS`] times.
     pub fn fit(times_s: &[f64]) -> Option<Self> {
         let usable = |time_s: f64| (0.0..=LONGEST_S).contains(&time_s);
         let numbered = times_s.iter().take(MOST_TRIALS).enumerate().map(|(k, time_s)| (k as f64 + 1.0, *time_s));
@@ -81,13 +82,13 @@ impl LearningCurve {
         [flat, exponential, power].into_iter().reduce(|a, b| if b.aicc < a.aicc { b } else { a })
     }
 
-    /// The curve's time in a trial (from 1), s.
+    /// Returns the curve's time in a trial (from 1), s.
     pub fn time_s(&self, trial: u32) -> f64 {
         self.asymptote_s + self.gain_s * decay(self.shape, self.rate, f64::from(trial.max(1)))
     }
 }
 
-/// What is left of the gain in trial `n`.
+/// The remaining fraction of the gain in trial `n`.
 fn decay(shape: Shape, rate: f64, n: f64) -> f64 {
     match shape {
         Shape::Exponential => libm::exp(-(n - 1.0) / rate),
@@ -96,7 +97,8 @@ fn decay(shape: Shape, rate: f64, n: f64) -> f64 {
     }
 }
 
-/// For a given rate the curve is linear in the other two; the rate is searched in steps of equal ratio and then by golden section.
+/// For a given rate the curve is linear in the other two; the rate is searched in steps of equal ratio and then by
+/// golden section.
 fn best(shape: Shape, points: &Points, [least, most]: [f64; 2]) -> LearningCurve {
     let ratio = libm::log(most / least) / f64::from(GRID);
     let rate = |step: f64| least * libm::exp(ratio * step.clamp(0.0, f64::from(GRID)));
@@ -118,7 +120,8 @@ fn best(shape: Shape, points: &Points, [least, most]: [f64; 2]) -> LearningCurve
     linear(step).curve(shape, rate(step), points)
 }
 
-/// Least squares for the asymptote and the gain, neither below zero: nobody unlearns, and no time is negative.
+/// Least squares for the asymptote and the gain, neither below zero: performance does not get worse, and no time is
+/// negative.
 #[derive(Clone, Copy)]
 struct Linear {
     asymptote: f64,
@@ -150,7 +153,7 @@ impl Linear {
         let count = points.len() as f64;
         // The scatter counts as a parameter (Burnham and Anderson 2002).
         let parameters = if shape == Shape::Flat { 2.0 } else { 4.0 };
-        // A perfect fit would have a logarithm of minus infinity; a microsecond is no scatter.
+        // A perfect fit would have a logarithm of minus infinity; a microsecond is negligible scatter.
         let variance = (self.square / count).max(1e-12);
         let correction = 2.0 * parameters * (parameters + 1.0) / (count - parameters - 1.0);
         let trials_to_plateau = to_plateau(shape, rate, self.asymptote, self.gain);

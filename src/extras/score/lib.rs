@@ -3,7 +3,7 @@
 //! Takes [`Sample`]s of motion (m) and force (N) of both hands at about 1 kHz, and [`Happening`](nima_core::task::Happening)s (a ring placed, a wire touched); returns a
 //! [`Score`] of named measures, each with unit, definition and source. [`Proficiency`] and [`LearningCurve`] judge a sequence of
 //! trials, [`Guidance`] says after which of them the trainee is told the result. [`scored`] scores the ticks of a loop, or a recorded
-//! session; everything else knows no loop, device, file, thread or clock. `docs/score.md` lists the measures.
+//! session; everything else knows no loop, device, file, thread or clock. `docs/reference/measures.md` lists the measures.
 //!
 //! ```
 //! use nalgebra::Vector3;

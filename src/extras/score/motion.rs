@@ -12,12 +12,12 @@ use crate::{
 pub(crate) const IDLE_M_PER_S: f64 = 0.005;
 /// A peak of speed counts as a movement if the speed rises and falls by this much around it, m/s.
 const PEAK_M_PER_S: f64 = 0.010;
-/// A movement that is judged for its smoothness lasts at least so many steps: 0.3 s.
+/// Minimum number of steps of a movement whose smoothness is judged: 0.3 s.
 const MOVEMENT_STEPS: usize = 30;
 
-/// A stretch of the track without a gap.
+/// A segment of the track without a gap.
 pub(crate) struct Stretch<'a> {
-    /// Place of the first point on the grid of the trial.
+    /// Index of the first point on the grid of the trial.
     pub grid: usize,
     pub points: &'a [Vector3<f64>],
     /// m/s, m/s^2 and m/s^3 at each point.
@@ -47,7 +47,7 @@ impl<'a> Motion<'a> {
         self.sum(path_m)
     }
 
-    /// Way up and down, m.
+    /// Path up and down, m.
     pub(crate) fn depth_m(&self) -> Option<f64> {
         self.sum(|points| points.windows(2).map(|two| (two[1].z - two[0].z).abs()).sum())
     }
@@ -90,13 +90,13 @@ impl<'a> Motion<'a> {
         cloud.volume()
     }
 
-    /// Log dimensionless jerk and spectral arc length of the longest stretch.
+    /// Returns log dimensionless jerk and spectral arc length of the longest segment.
     pub(crate) fn smoothness(&self) -> [Option<f64>; 2] {
         let longest = self.stretches.iter().reduce(|a, b| if b.points.len() > a.points.len() { b } else { a });
         longest.map_or([None; 2], |stretch| smoothness(&stretch.speed, &stretch.jerk))
     }
 
-    /// The same, as means over the movements: stretches of at least 0.3 s in which the hand is not idle.
+    /// The same, as means over the movements: segments of at least 0.3 s in which the hand is not idle.
     pub(crate) fn smoothness_of_movements(&self) -> [Option<f64>; 2] {
         let mut sums = [(0.0, 0_u32); 2];
         for stretch in &self.stretches {
@@ -123,7 +123,7 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Length of the way through the points, m.
+/// Length of the path through the points, m.
 pub(crate) fn path_m(points: &[Vector3<f64>]) -> f64 {
     points.windows(2).map(|two| (two[1] - two[0]).norm()).sum()
 }
@@ -132,7 +132,8 @@ fn smoothness(speed: &[f64], jerk: &[f64]) -> [Option<f64>; 2] {
     [log_dimensionless_jerk(speed, jerk), spectral_arc_length(speed)]
 }
 
-/// Peaks of a speed that starts from rest: turned round by [`PEAK_M_PER_S`] after a rise by as much. One that the end cuts off counts.
+/// Number of peaks of a speed that starts from rest: reversals of at least [`PEAK_M_PER_S`] after a rise of as much. A
+/// peak that is cut off by the end counts.
 fn peaks(speed: &[f64]) -> usize {
     let mut count = 0;
     let mut rising = false;

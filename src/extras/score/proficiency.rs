@@ -1,29 +1,29 @@
-//! When training with a task is done.
+//! When training with a task is complete.
 
 use serde::Serialize;
 
 use crate::{Criterion, Score};
 
-/// Where training stands.
+/// Progress of training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
     /// Not yet `consecutive` trials in a row.
     Practising {
-        /// Trials in a row that met the criterion, up to the newest.
+        /// Number of successive trials that met the criterion, up to the newest.
         in_a_row: u32,
     },
-    /// They were reached; now the additional ones.
+    /// They were reached; the additional ones follow.
     Confirming {
-        /// Additional trials that met the criterion.
+        /// Number of additional trials that met the criterion.
         additional: u32,
     },
-    /// All were reached, in this trial (from 1).
+    /// All were reached, in this trial.
     Reached {
-        /// Number of the trial.
+        /// From 1.
         trial: u32,
     },
-    /// Not reached within the most trials that are allowed.
+    /// Not reached within the maximum number of trials.
     GivenUp,
 }
 
@@ -46,18 +46,17 @@ pub struct Proficiency {
 }
 
 impl Proficiency {
-    /// Before the first trial.
     pub fn new(criterion: Criterion) -> Self {
         Self { criterion, trials: 0, standing: Standing::Practising { in_a_row: 0 } }
     }
 
-    /// Takes the score of the next trial.
+    /// Adds the score of the next trial.
     pub fn take(&mut self, score: &Score) -> Standing {
         let drops = score.value("drops_out_of_view").unwrap_or(0.0);
         self.take_trial(score.value("completion_time_s"), drops as u32)
     }
 
-    /// Takes the next trial by its completion time (s; `None` if it was not completed) and its drops out of view.
+    /// Adds the next trial by its completion time (s; `None` if it was not completed) and its drops out of view.
     pub fn take_trial(&mut self, completion_time_s: Option<f64>, drops_out_of_view: u32) -> Standing {
         if matches!(self.standing, Standing::Reached { .. } | Standing::GivenUp) {
             return self.standing;
@@ -67,12 +66,11 @@ impl Proficiency {
         self.standing
     }
 
-    /// Where training stands.
     pub fn standing(&self) -> Standing {
         self.standing
     }
 
-    /// Trials so far, up to the one that decided.
+    /// Number of trials so far, up to the deciding one.
     pub fn trials(&self) -> u32 {
         self.trials
     }

@@ -1,47 +1,47 @@
-//! What the scorer is fed with: both hands at one moment.
+//! Input of the scorer: both hands at one moment.
 
 use nalgebra::Vector3;
 use nima_core::SIDES;
 
-/// Largest position that is taken for one, m, and largest force, N. What is beyond is a fault of the input, and its squares would
-/// spoil every mean.
+/// Maximum plausible position, m, and force, N. Larger values are a fault of the input, and their squares would spoil
+/// every mean.
 const LARGEST_M: f64 = 1e3;
 const LARGEST_N: f64 = 1e5;
 
 /// Both hands at one moment. Steps may be uneven; a step back in time is skipped and counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Time, s, on any clock that runs forward; that of the happenings.
+    /// Time, s, on any clock that runs forward; the same as the events'.
     pub t_s: f64,
-    /// Both, in the order of [`nima_core::Side::ALL`]; `None` while that side is not known.
+    /// Both, in the order of [`nima_core::Side::ALL`]; `None` while that side is unknown.
     pub hands: [Option<HandSample>; SIDES],
 }
 
 /// One hand at one moment, in the frame `world` (z up).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HandSample {
-    /// Tip of the instrument, m.
+    /// m.
     pub tip_m: Vector3<f64>,
     /// Opening of the jaw, rad; `None` for an instrument without one.
     pub jaw_rad: Option<f64>,
-    /// Contact force on the instrument at its tip, N. NaN where it is not known: the motion still counts.
+    /// Contact force on the instrument at its tip, N. NaN while unknown: the motion still counts.
     pub force_n: Vector3<f64>,
     /// Force that the hand feels, N.
     pub rendered_n: Vector3<f64>,
-    /// The hand moves the instrument.
+    /// Whether the hand moves the instrument.
     pub engaged: bool,
-    /// The tip is in the endoscope's picture.
+    /// Whether the tip is in the endoscope image.
     pub in_view: bool,
 }
 
-/// The parts of a hand's sample that can be used.
+/// The usable parts of a hand's sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Usable {
     pub tip_m: Option<Vector3<f64>>,
     pub jaw_rad: Option<f64>,
     pub force_n: Option<Vector3<f64>>,
     pub rendered_n: Option<Vector3<f64>>,
-    /// Something was there and could not be used.
+    /// Whether a part was present but unusable.
     pub spoilt: bool,
 }
 

@@ -5,13 +5,12 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::{Definition, MEASURES};
 
-/// How a trial went out.
+/// Outcome of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// The task was done within the time limit.
+    /// The task was completed within the time limit.
     Completed,
-    /// The time limit was reached.
     OutOfTime,
     /// The trial was given up.
     Aborted,
@@ -19,14 +18,15 @@ pub enum Outcome {
     Unfinished,
 }
 
-/// One measure of a trial, for one hand where it has a side.
+/// One measure of a trial, of one hand if it has a side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
-    /// What is measured: id, words, unit, definition and source.
+    /// Id, text, unit, definition and source.
     pub definition: &'static Definition,
     /// The hand; `None` for a measure of the whole trial.
     pub side: Option<Side>,
-    /// In the unit of the definition, always finite. `None` if there is nothing to measure: no such hand, another task, no contact.
+    /// In the unit of the definition, always finite. `None` if there is nothing to measure: no such hand, another task,
+    /// no contact.
     pub value: Option<f64>,
 }
 
@@ -40,11 +40,11 @@ impl Measure {
     }
 }
 
-/// All measures of a trial. Serialises to one flat object of keys and numbers, with `null` for what could not be measured.
+/// All measures of a trial. Serialises to one flat object of keys and numbers, with `null` for missing values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Score {
     outcome: Outcome,
-    /// For each of [`MEASURES`]: both sides, or the whole trial at the first place.
+    /// For each of [`MEASURES`]: both sides, or the whole trial at the first index.
     values: Vec<[Option<f64>; SIDES]>,
 }
 
@@ -53,24 +53,23 @@ impl Score {
         Self { outcome, values: vec![[None; SIDES]; MEASURES.len()] }
     }
 
-    /// How the trial went out.
     pub fn outcome(&self) -> Outcome {
         self.outcome
     }
 
-    /// The value of a measure of the whole trial; `None` also for an id that there is not.
+    /// Returns a measure of the whole trial; also `None` for an unknown id.
     pub fn value(&self, id: &str) -> Option<f64> {
         let place = MEASURES.iter().position(|definition| definition.id == id && !definition.per_hand)?;
         self.values.get(place)?[0]
     }
 
-    /// The value of a measure of one hand; `None` also for an id that there is not.
+    /// Returns a measure of one hand; also `None` for an unknown id.
     pub fn of(&self, id: &str, side: Side) -> Option<f64> {
         let place = MEASURES.iter().position(|definition| definition.id == id && definition.per_hand)?;
         self.values.get(place)?[side.index()]
     }
 
-    /// Every measure, in the order of [`MEASURES`]; left and right where the hands are measured apart.
+    /// Returns every measure, in the order of [`MEASURES`]; left and right if the hands are measured separately.
     pub fn measures(&self) -> impl Iterator<Item = Measure> {
         MEASURES.iter().zip(&self.values).flat_map(|(definition, values)| {
             let of = |side: Side| Measure { definition, side: Some(side), value: values[side.index()] };

@@ -1,6 +1,7 @@
-//! The score of a trial: how the hands moved and pressed while they were engaged, and what happened to the objects of the scene.
+//! The score of a trial: motion and force of the hands while they were engaged, and events of the scene's objects.
 //!
-//! [`LiveTrial`] takes it from the ticks of a loop that runs, [`score`] from a recorded session, with the same figures to the last bit.
+//! [`LiveTrial`] computes it from the ticks of a running loop, [`score`] from a recorded session, with the same results
+//! to the last bit.
 
 mod live;
 
@@ -25,21 +26,21 @@ use nima_session::{
 pub use self::live::LiveTrial;
 use crate::{HandSample, Sample, Score, Scorer, TaskFile};
 
-/// A session is read in stretches of this length, ns.
+/// A session is read in parts of this length, ns.
 const STRETCH_NS: u64 = 2_000_000_000;
 
-/// A trial, from the first tick in which an arm is engaged to the last one. What is told of a time must be told before the sample of that
-/// time.
+/// A trial, from the first tick in which an arm is engaged to the last one. Events of a time must be added before the
+/// sample of that time.
 #[derive(Debug)]
 struct Trial {
     scorer: Scorer,
     begun_s: Option<f64>,
     engaged_s: f64,
-    /// The scorer as it was when an arm was last engaged, while none is.
+    /// The scorer at the time when an arm was last engaged, while none is.
     before_pause: Option<Scorer>,
     openings: [VecDeque<(f64, f64)>; SIDES],
     happenings: VecDeque<Happening>,
-    /// How far the jaws of each side are open now, rad.
+    /// Current opening of the jaws of each side, rad.
     open_rad: [Option<f64>; SIDES],
 }
 
@@ -57,17 +58,17 @@ impl Trial {
         }
     }
 
-    /// From this time of the loop (s) on the jaws of this side are open so far, rad.
+    /// Sets the opening of this side's jaws from this time of the loop (s) on, rad.
     fn opening(&mut self, side: Side, t_s: f64, opening_rad: f64) {
         self.openings[side.index()].push_back((as_recorded(t_s), opening_rad));
     }
 
-    /// This happened to the objects.
+    /// Adds an event of the objects.
     fn happening(&mut self, happening: &Happening) {
         self.happenings.push_back(Happening { t_s: as_recorded(happening.t_s), ..*happening });
     }
 
-    /// Both hands at the next time of the loop. The jaws are those that were told.
+    /// Adds both hands at the next time of the loop, with the openings set before.
     fn sample(&mut self, sample: &Sample) {
         let mut sample = Sample { t_s: as_recorded(sample.t_s), ..*sample };
         self.move_jaws(&mut sample);
@@ -98,8 +99,8 @@ impl Trial {
         }
     }
 
-    /// The score; `None` if no arm was engaged. With `is_done` the trial was completed when an arm was last engaged: where nobody tells
-    /// when the task is done.
+    /// Returns the score; `None` if no arm was engaged. With `is_done` the trial counts as completed when an arm was
+    /// last engaged: for sessions without a report of the completion.
     fn end(self, is_done: bool) -> Option<Score> {
         self.begun_s?;
         let mut scorer = self.before_pause.unwrap_or(self.scorer);
@@ -122,16 +123,17 @@ impl Trial {
     }
 }
 
-/// A time of the loop (s) as a session has it, in whole ns: so that a loop that runs has the figures of its recording.
+/// Converts a time of the loop (s) to a session's form, in whole ns, so that a running loop has the same results as its
+/// recording.
 fn as_recorded(t_s: f64) -> f64 {
     (t_s.max(0.0) * 1e9).round() / 1e9
 }
 
-/// Scores a stretch of a session (ns since 1970); `None` if no arm was engaged in it. A session in which nobody told of objects counts as a
-/// task that was done when an arm was last engaged.
+/// Scores a part of a session (ns since 1970); `None` if no arm was engaged in it. In a session without a source of
+/// objects, the task counts as done when an arm was last engaged.
 ///
 /// # Errors
-/// [`PlottedError`] for a file that cannot be read, or that another program wrote.
+/// [`PlottedError`] for a file that cannot be read, or was written by another program.
 pub fn score(
     reader: &Reader,
     path: &Path,
@@ -164,7 +166,7 @@ pub fn score(
     Ok(trial.end(!objects::are_told(reader)))
 }
 
-/// A hand in a tick. No endoscope tells yet whether it is in view.
+/// Returns a hand in a tick. No endoscope reports yet whether it is in view.
 const fn hand_of(tip_m: Vector3<f64>, force_n: Vector3<f64>, rendered_n: Vector3<f64>, engaged: bool) -> HandSample {
     HandSample { tip_m, jaw_rad: None, force_n, rendered_n, engaged, in_view: true }
 }
@@ -225,7 +227,7 @@ mod tests {
         assert!((value("trial_time_s") - 1.1).abs() < 1e-9 && value("lifts") < 1.5, "{}", value("lifts"));
         assert!((value("time_to_first_grasp_s") - 0.3).abs() < 1e-9);
         assert!((value("samples") - 1101.0).abs() < 1e-9, "the pause within it counts: {}", value("samples"));
-        assert!((value("happenings_skipped")).abs() < 1e-9, "what was before it is no fault of the data");
+        assert!((value("happenings_skipped")).abs() < 1e-9, "data before it are not at fault");
     }
 
     #[test]

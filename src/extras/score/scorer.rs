@@ -1,4 +1,4 @@
-//! From the samples and events of a trial to its score.
+//! Computes the score of a trial from its samples and events.
 
 use nima_core::{
     SIDES, Side,
@@ -15,15 +15,16 @@ use crate::{
     two_hands::TwoHands,
 };
 
-/// Latest time that is taken for one, s: beyond it a clock is broken, and steps of 1 ms begin to blur.
+/// Maximum plausible time, s: beyond it a clock is broken, and steps of 1 ms lose their precision.
 const LATEST_S: f64 = 1e12;
-/// Force before a mark, s, that belongs to the lump that was marked.
+/// Period before a mark whose force belongs to the marked lump, s.
 const BEFORE_MARK_S: f64 = 2.0;
 
-/// Takes the samples and happenings of one trial in the order of time and makes its [`Score`].
+/// Processes the samples and events of one trial in the order of time and computes its [`Score`].
 ///
-/// Each sample costs the same. Memory is taken at the beginning, for motion and force at 100 Hz up to the time limit (4 MB for 300 s), and
-/// only a signal with very many gaps takes more. Without [`Event::Begun`] the trial begins with the first sample or event.
+/// Each sample costs the same. Memory is allocated at the beginning, for motion and force at 100 Hz up to the time
+/// limit (4 MB for 300 s); only a signal with very many gaps needs more. Without [`Event::Begun`] the trial begins with
+/// the first sample or event.
 #[derive(Clone, Debug)]
 pub struct Scorer {
     task: TaskFile,
@@ -33,7 +34,7 @@ pub struct Scorer {
     /// Newest sample and newest event, s from the beginning.
     newest_s: Option<f64>,
     latest_s: f64,
-    /// The end, s from the beginning, and how it came.
+    /// The end, s from the beginning, and its kind.
     end: Option<(f64, Outcome)>,
     samples: u64,
     samples_skipped: u64,
@@ -57,8 +58,8 @@ impl Scorer {
         }
     }
 
-    /// Takes the next sample. Samples after the end and before the beginning do not count; what is not finite or goes back in time is
-    /// skipped and counted.
+    /// Adds the next sample. Samples before the beginning and after the end do not count; a sample that is not finite
+    /// or goes back in time is skipped and counted.
     pub fn sample(&mut self, sample: &Sample) {
         if self.end.is_some() {
             return;
@@ -84,7 +85,7 @@ impl Scorer {
         self.samples_skipped += u64::from(spoilt);
     }
 
-    /// Takes an event. Its place among the samples may be late by some samples.
+    /// Adds an event. It may follow the samples of its time by some samples.
     pub fn happening(&mut self, happening: &Happening) {
         if happening.event == Event::Begun && happening.t_s.abs() <= LATEST_S {
             *self = Self { begin_s: Some(happening.t_s), ..Self::new(&self.task) };
@@ -108,8 +109,8 @@ impl Scorer {
         }
     }
 
-    /// Ends the trial with what is known and gives its score. For a trial of 300 s this takes some 100 ms
-    /// and 15 MB, for the spectra: not within the loop.
+    /// Ends the trial with the current data and returns its score. For a trial of 300 s this takes about 100 ms and 15
+    /// MB, for the spectra, so do not call it within the loop.
     pub fn finish(self) -> Score {
         let (end_s, outcome) = self.end.unwrap_or((self.latest_s, Outcome::Unfinished));
         let mut score = Score::new(outcome);
@@ -124,7 +125,7 @@ impl Scorer {
         score
     }
 
-    /// Time since the beginning, which is now if it was not before; `None` for a time that is none.
+    /// Returns the time since the beginning, which is now if there was none before; `None` for an invalid time.
     fn since_begin_s(&mut self, t_s: f64) -> Option<f64> {
         (t_s.abs() <= LATEST_S).then(|| t_s - *self.begin_s.get_or_insert(t_s))
     }
@@ -142,7 +143,7 @@ impl Scorer {
         score.set("trial_time_s", self.begin_s.map(|_| end_s));
         score.set("completion_time_s", completed_s);
         score.set_hands("engaged_share", self.each(|hand| hand.times.engaged_share()));
-        // Without a task there is neither a reference nor a picture.
+        // Without a task there is neither a reference nor an image.
         if self.task.kind != TaskKind::Free {
             score.set("time_over_reference", completed_s.map(|time_s| time_s / self.task.reference_time_s));
             score.set_hands("out_of_view_share", self.each(|hand| hand.times.out_of_view_share()));
@@ -254,7 +255,7 @@ fn score_motion(score: &mut Score, tips: &[Track; SIDES], handled_s: &[Vec<f64>;
     score.set_hands("log_dimensionless_jerk_per_movement", single.map(|[jerk, _]| jerk));
     score.set_hands("sparc_per_movement", single.map(|[_, arc]| arc));
     let hands = TwoHands::of(&motions);
-    // Each point of the grid counts for one step; one more fits into the time than there are steps.
+    // Each point of the grid counts for one step, although there is one step fewer than points.
     score.set("idle_time_s", hands.idle_s().map(|idle_s| idle_s.min(end_s)));
     score.set("both_move_share", hands.both_move());
     score.set("bimanual_dexterity", hands.correlation());

@@ -2,15 +2,15 @@
 
 use crate::signal::{RATE_HZ, STEP_S, magnitude_spectrum, peak};
 
-/// The spectrum is looked at up to this frequency, Hz; within it, up to the last frequency with this share of the largest magnitude. The
-/// signal is padded to 2^4 times its length. All three: Balasubramanian et al. 2015.
+/// The spectrum is used up to this frequency, Hz; within it, up to the last frequency with this fraction of the maximum
+/// magnitude. The signal is padded to 2^4 times its length. All three: Balasubramanian et al. 2015.
 const CUTOFF_HZ: f64 = 10.0;
 const THRESHOLD: f64 = 0.05;
 const PADDING: usize = 16;
 
-/// A hand that was never faster, m/s, made no movement that could be smooth: its spectrum would be that of noise.
+/// A hand that was never faster, m/s, made no movement to judge: its spectrum would be that of noise.
 const MOVED_M_PER_S: f64 = 0.005;
-/// Points of the shortest stretch that is judged: 0.2 s.
+/// Minimum number of points of a judged segment: 0.2 s.
 const LEAST_POINTS: usize = 21;
 
 /// Whether there is a movement to judge.
@@ -39,7 +39,7 @@ pub(crate) fn spectral_arc_length(speed: &[f64]) -> Option<f64> {
     let bin_hz = RATE_HZ / length as f64;
     let bins = (CUTOFF_HZ / bin_hz) as usize + 1;
     let mut spectrum = magnitude_spectrum(speed, length, bins);
-    // A speed is never negative, so no magnitude is above that of frequency zero.
+    // A speed is never negative, so no magnitude exceeds the one at frequency zero.
     let largest = spectrum.first().copied().filter(|largest| *largest > 0.0)?;
     for magnitude in &mut spectrum {
         *magnitude /= largest;
@@ -54,7 +54,7 @@ pub(crate) fn spectral_arc_length(speed: &[f64]) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Figures of the authors' Python (github.com/siva82kb/SPARC, `scripts/smoothness.py`), run with `NumPy`.
+    /// Results of the authors' Python (github.com/siva82kb/SPARC, `scripts/smoothness.py`), run with `NumPy`.
     #[test]
     fn the_spectral_arc_length_is_that_of_the_authors() {
         let gauss = |k: i32| (-5.0 * (f64::from(k - 100) / 100.0).powi(2)).exp();

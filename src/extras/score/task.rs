@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use toml::Table;
 
-/// Longest time limit of a trial, s: its trajectory is kept at 100 Hz until it ends.
+/// Maximum time limit of a trial, s: its trajectory is stored at 100 Hz until it ends.
 pub const LONGEST_TRIAL_S: f64 = 1200.0;
 
-/// A training task, as its TOML file says it. Every key but `name` and `kind` has a default.
+/// A training task in its TOML file. Every key but `name` and `kind` has a default.
 ///
 /// ```
 /// use nima_core::task::TaskKind;
@@ -26,56 +26,55 @@ pub const LONGEST_TRIAL_S: f64 = 1200.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TaskFile {
-    /// Name for the screen.
     pub name: String,
-    /// What is done.
+    /// Kind of task.
     pub kind: TaskKind,
-    /// The trial is over after this time, s. 300 s in the peg transfer of FLS (Derossis et al. 1998).
+    /// The trial ends after this time, s. 300 s in the peg transfer of FLS (Derossis et al. 1998).
     #[serde(default = "time_limit_s")]
     pub time_limit_s: f64,
-    /// Taken off the score for each drop out of view, s. FLS does not publish its own; 10 s is ours.
+    /// Subtracted from the score for each drop out of view, s. FLS does not publish its value; 10 s is our choice.
     #[serde(default = "penalty_s")]
     pub penalty_s: f64,
-    /// Time of an expert, s, which `time_over_reference` compares with.
+    /// Time of an expert, s, used for `time_over_reference`.
     #[serde(default = "reference_time_s")]
     pub reference_time_s: f64,
-    /// Force at the tip above which time and excursions are counted, N.
+    /// Threshold of the force at the tip for counting time and excursions, N.
     #[serde(default = "force_threshold_n")]
     pub force_threshold_n: f64,
-    /// Force at the tip from which on the instrument is in contact, N: above the noise of the force.
+    /// Force at the tip above which the instrument is in contact, N: above the noise of the force.
     #[serde(default = "contact_n")]
     pub contact_n: f64,
-    /// Number of lumps that can be found. In a scene with lumps it is theirs.
+    /// Number of lumps that can be found. In a scene with lumps it is their number.
     #[serde(default)]
     pub lumps: Option<u32>,
-    /// A mark finds a lump if it is over it, or this far beside it, m.
+    /// A mark finds a lump if it is on the lump, or at most this far from it, m.
     #[serde(default = "mark_tolerance_m")]
     pub mark_tolerance_m: f64,
-    /// When training is done.
+    /// When training is complete.
     #[serde(default)]
     pub proficiency: Criterion,
 }
 
-/// When training is done: by default that of peg transfer in Ritter and Scott 2007 (Surg. Innov. 14:107-112) and its curriculum.
+/// When training is complete: by default the criterion for peg transfer in Ritter and Scott 2007 (Surg. Innov.
+/// 14:107-112) and its curriculum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Criterion {
     /// A trial meets the criterion within this time, s.
     pub time_s: f64,
-    /// Most drops out of view in such a trial.
+    /// Maximum drops out of view in such a trial.
     pub drops_out_of_view: u32,
-    /// So many such trials in a row,
+    /// Number of such trials in a row,
     pub consecutive: u32,
-    /// then so many more, not necessarily in a row.
+    /// followed by this many more, not necessarily in a row.
     pub additional: u32,
-    /// After so many trials without that, training is given up.
+    /// Training is given up after this many trials without success.
     pub max_trials: u32,
 }
 
-/// Why a task file was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TaskError {
-    #[error("the task file cannot be read: {reason}")]
+    #[error("cannot read the task file: {reason}")]
     Toml { reason: String },
     #[error("the task file has {key} = {value}: it must be {allowed}")]
     Setting { key: &'static str, value: f64, allowed: &'static str },
@@ -95,10 +94,11 @@ impl Criterion {
 }
 
 impl TaskFile {
-    /// Reads the text of a task file.
+    /// Parses a task file.
     ///
     /// # Errors
-    /// [`TaskError::Toml`] if it is no TOML or has an unknown or missing key, [`TaskError::Setting`] if a value is out of range.
+    /// [`TaskError::Toml`] if it is not TOML or has an unknown or missing key, [`TaskError::Setting`] if a value is out
+    /// of range.
     pub fn from_toml(text: &str) -> Result<Self, TaskError> {
         let task: Self = nima_files::from_toml(text).map_err(|misfit| {
             let reason = format!("line {}: {}", misfit.line(text), misfit.message());
@@ -108,7 +108,7 @@ impl TaskFile {
         Ok(task)
     }
 
-    /// The task of a scene.
+    /// Returns the task of a scene.
     ///
     /// # Errors
     /// As [`from_toml`](Self::from_toml).
@@ -118,7 +118,7 @@ impl TaskFile {
         Ok(task)
     }
 
-    /// As the task of a scene.
+    /// Converts it to the task of a scene.
     ///
     /// # Errors
     /// [`TaskError::Toml`] if it cannot be written.
@@ -126,10 +126,8 @@ impl TaskFile {
         Table::try_from(self).map_err(unreadable)?.try_into().map_err(unreadable)
     }
 
-    /// Whether every value is in its range.
-    ///
     /// # Errors
-    /// [`TaskError::Setting`] names the first one that is not.
+    /// [`TaskError::Setting`] for the first value out of range.
     pub fn check(&self) -> Result<(), TaskError> {
         let positive = |key, value: f64, up_to: f64, allowed| {
             if value > 0.0 && value <= up_to { Ok(()) } else { Err(TaskError::Setting { key, value, allowed }) }
@@ -158,7 +156,8 @@ impl TaskFile {
     }
 }
 
-/// Has the task of every scene that is loaded from now on read here. A program does it once, before it loads any.
+/// Registers this crate as the reader of the tasks of all scenes that are loaded from now on. A program calls it once,
+/// before it loads a scene.
 pub fn provide_tasks() {
     score_tasks_by(|task| {
         let read = TaskFile::of(task).and_then(|file| file.to_scene());

@@ -1,4 +1,4 @@
-//! How the two hands work together.
+//! Cooperation of the two hands.
 
 use nima_core::SIDES;
 
@@ -7,9 +7,9 @@ use crate::{
     signal::STEP_S,
 };
 
-/// Points in which both hands are known, below which nothing is said: 1 s.
+/// Minimum number of points with both hands known for a result: 1 s.
 const LEAST_POINTS: usize = 100;
-/// A speed that varies less (standard deviation, m/s) has no correlation but that of its noise.
+/// A speed that varies less (standard deviation, m/s) has only the correlation of its noise.
 const LEAST_SD_M_PER_S: f64 = 1e-4;
 
 /// Speeds of both hands on the grid of the trial.
@@ -32,14 +32,14 @@ impl TwoHands {
         Self { speeds }
     }
 
-    /// Time in which no hand that is known moves, s.
+    /// Time in which no known hand moves, s.
     pub(crate) fn idle_s(&self) -> Option<f64> {
         let known = self.speeds.iter().filter(|hands| hands.iter().flatten().next().is_some());
         let idle = known.clone().filter(|hands| hands.iter().flatten().all(|speed| *speed < IDLE_M_PER_S));
         (known.count() > 0).then_some(idle.count() as f64 * STEP_S)
     }
 
-    /// Share of the time in which both move, of that in which both are known.
+    /// Fraction of the time with both hands known in which both move.
     pub(crate) fn both_move(&self) -> Option<f64> {
         let count = self.pairs().count();
         let both = self.pairs().filter(|pair| pair.iter().all(|speed| *speed >= IDLE_M_PER_S)).count();

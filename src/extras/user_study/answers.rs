@@ -1,4 +1,4 @@
-//! What a participant answered.
+//! Answers of a participant.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::{
     questionnaire::{of_sus, raw_tlx, weighted_tlx},
 };
 
-/// Most letters of a remark.
+/// Maximum number of characters of a remark.
 const TEXT_MAX: usize = 4000;
 
 /// The answers to one questionnaire.
@@ -16,23 +16,20 @@ const TEXT_MAX: usize = 4000;
 pub enum Answers {
     /// Six ratings, 0 to 100 in steps of 5.
     NasaTlx(Ratings),
-    /// The same, and the scale chosen of each of the [`PAIRS`].
+    /// Six ratings, and the scale chosen from each of the [`PAIRS`].
     NasaTlxWeighted {
-        /// The ratings.
         #[serde(flatten)]
         ratings: Ratings,
-        /// Of each pair the scale that contributed more.
+        /// For each pair, the scale that contributed more.
         chosen: [TlxScale; 15],
     },
     /// Ten answers of 1 to 5.
     Sus([u8; 10]),
     /// 1 to 7.
     Realism(u8),
-    /// Any text.
     FreeText(String),
 }
 
-/// The ratings of the NASA-TLX.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ratings {
     pub mental: u8,
@@ -56,7 +53,7 @@ impl Ratings {
     }
 }
 
-/// A file of answers: those to several questionnaires may stand in it.
+/// A file of answers, which may contain those to several questionnaires.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AnswerFile {
@@ -75,10 +72,10 @@ struct Weighted {
 }
 
 impl Answers {
-    /// The answers to this questionnaire in a text (TOML), `realism = 5`.
+    /// Parses the answers to this questionnaire from a text (TOML), `realism = 5`.
     ///
     /// # Errors
-    /// What is missing or wrong in it.
+    /// Missing or wrong answers.
     ///
     /// ```
     /// use nima_user_study::{Answers, Questionnaire};
@@ -115,10 +112,10 @@ impl Answers {
         }
     }
 
-    /// Whether every answer is one that the form allows.
+    /// Checks that the form allows every answer.
     ///
     /// # Errors
-    /// Which is not.
+    /// The answer that is not allowed.
     pub fn check(&self) -> Result<(), String> {
         let on_scale = |ratings: Ratings| {
             let wrong = TLX_SCALES.iter().zip(ratings.all()).find(|(_, rating)| *rating > 100 || rating % 5 != 0);
@@ -132,7 +129,7 @@ impl Answers {
                 on_scale(*ratings)?;
                 let wrong =
                     PAIRS.iter().zip(chosen).position(|((one, other), chosen)| chosen != one && chosen != other);
-                wrong.map_or(Ok(()), |at| Err(format!("chosen: number {} is no scale of its pair", at + 1)))
+                wrong.map_or(Ok(()), |at| Err(format!("chosen: number {} is not a scale of its pair", at + 1)))
             }
             Self::Sus(items) => {
                 let wrong = items.iter().position(|answer| !(1..=5).contains(answer));
@@ -146,7 +143,7 @@ impl Answers {
         }
     }
 
-    /// The scores, each with the name of its column.
+    /// Returns the scores, each with the name of its column.
     pub fn scores(&self) -> Vec<(&'static str, f64)> {
         let ratings = |ratings: &Ratings| {
             let names =
@@ -167,7 +164,7 @@ impl Answers {
     }
 }
 
-/// How the answers are written.
+/// Returns the format of the answers.
 const fn form(asked: Questionnaire) -> &'static str {
     match asked {
         Questionnaire::NasaTlx => {

@@ -1,4 +1,4 @@
-//! What is compared.
+//! The compared conditions.
 
 use std::fmt;
 
@@ -8,28 +8,28 @@ use nima_core::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Longest name, letters.
+/// Maximum length of a name, characters.
 const NAME_MAX: usize = 40;
 
-/// A condition: what the hand feels. Its `Debug` shows nothing, so that no log tells it by accident.
+/// A condition: the feedback to the hand. Its `Debug` shows nothing, so that no log reveals it by accident.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
     /// Its name, for the report after the unblinding.
     pub name: String,
-    /// The hand feels no force at all; then there is neither mode nor gain.
+    /// Whether the hand feels no force at all; then there is neither mode nor gain.
     #[serde(default)]
     pub no_force: bool,
-    /// How the force is made.
+    /// The rendering mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mode: Option<Mode>,
-    /// What it is multiplied by, above 0, within [`GAIN`]; 1 where it is not named.
+    /// Gain, above 0, within [`GAIN`]; 1 if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
     /// One-way delay of the link, ms, within [`DELAY_S`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delay_ms: Option<f64>,
-    /// The motion from which the leader makes the force; the rig's where it is not named.
+    /// The motion from which the leader computes the force; the rig's if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own_motion: Option<OwnMotion>,
 }
@@ -41,7 +41,7 @@ impl fmt::Debug for Condition {
 }
 
 impl Condition {
-    /// What is wrong with it, a line each.
+    /// Returns its mistakes, one line each.
     pub(crate) fn mistakes(&self) -> Vec<String> {
         let Self { name, no_force, mode, gain, delay_ms, own_motion } = self;
         let mut wrong = Vec::new();
@@ -50,7 +50,7 @@ impl Condition {
             wrong.push(format!("its name has to be 1 to {NAME_MAX} letters, digits, spaces or any of _ - . + ( ) %"));
         }
         if name.chars().count() == 1 {
-            wrong.push("a name of one letter could be taken for a label: give it a longer one".to_owned());
+            wrong.push("a name of one letter could be mistaken for a label: give it a longer one".to_owned());
         }
         if *no_force && (mode.is_some() || gain.is_some() || own_motion.is_some()) {
             wrong.push("with no_force there is no mode, gain or own_motion: remove them or no_force".to_owned());
@@ -59,7 +59,7 @@ impl Condition {
             wrong.push("mode is missing; or say no_force = true".to_owned());
         }
         if !*no_force && delay_ms.is_none() {
-            wrong.push("delay_ms is missing; 0 is no delay".to_owned());
+            wrong.push("delay_ms is missing; write 0 for no delay".to_owned());
         }
         let delays_ms = DELAY_S.per(1e-3, "ms");
         if delay_ms.is_some_and(|delay_ms| !delays_ms.contains(delay_ms)) {
@@ -78,7 +78,7 @@ impl Condition {
         of(self) == of(other)
     }
 
-    /// Words that tell it: its name, its mode, its delay.
+    /// Words that reveal it: its name, its mode, its delay.
     pub(crate) fn tells(&self) -> Vec<String> {
         let delay = self.delay_ms.filter(|delay_ms| *delay_ms > 0.0).map(|delay_ms| format!("{delay_ms}"));
         let mode = self.mode.map(|mode| mode.name().to_owned());

@@ -1,4 +1,4 @@
-//! What is written into the journal.
+//! Entries of the journal.
 
 use std::collections::BTreeMap;
 
@@ -10,19 +10,18 @@ use crate::{Answers, Label};
 /// The measures of a trial that have a value, by their keys.
 pub type Measures = BTreeMap<String, f64>;
 
-/// A line of the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// Its number, from 1.
+    /// From 1.
     pub n: u64,
-    /// When it was written, as whoever writes it tells the time.
+    /// Time of writing, in the form given by the caller.
     pub at: String,
-    /// What happened.
+    /// The event.
     #[serde(flatten)]
     pub event: Event,
 }
 
-/// Practice or a trial that counts.
+/// Practice, or a trial that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
@@ -30,18 +29,17 @@ pub enum Phase {
     Trial,
 }
 
-/// Which trial of a participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrialId {
     /// Practice, or one that counts.
     pub phase: Phase,
-    /// Its number among those of its phase, from 1.
+    /// Number among the trials of its phase, from 1.
     pub number: u32,
     /// From 1; more after interruptions.
     pub attempt: u32,
 }
 
-/// How a trial ended that has a result.
+/// How a trial with a result ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
@@ -50,7 +48,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// Of a trial that has a result; `None` if it was given up or broken off.
+    /// For a trial with a result; `None` if it was given up or interrupted.
     pub const fn of(outcome: Outcome) -> Option<Self> {
         match outcome {
             Outcome::Completed => Some(Self::Completed),
@@ -60,11 +58,11 @@ impl Ending {
     }
 }
 
-/// What happens in a study.
+/// An event of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// The folder was made.
+    /// The folder was created.
     StudyMade {
         commitment: String,
     },
@@ -78,7 +76,7 @@ pub enum Event {
         /// Not in practice.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         label: Option<Label>,
-        /// By a simulated person.
+        /// Done by a simulated person.
         simulated: bool,
     },
     TrialEnded {
@@ -87,21 +85,21 @@ pub enum Event {
         trial: TrialId,
         ending: Ending,
         measures: Measures,
-        /// Measures that tell the condition, encrypted; in a blind study only.
+        /// Measures that reveal the condition, encrypted; only in a blind study.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         withheld: Option<String>,
         /// The recording, in the folder of the study.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         session: Option<String>,
     },
-    /// Somebody gave it up.
+    /// The trial was given up.
     TrialAborted {
         participant: String,
         #[serde(flatten)]
         trial: TrialId,
         why: String,
     },
-    /// The program ended in the middle of it: found when the study was opened again.
+    /// The program ended in the middle of the trial: detected when the study was opened again.
     TrialInterrupted {
         participant: String,
         #[serde(flatten)]
@@ -114,13 +112,13 @@ pub enum Event {
     },
     Answered {
         participant: String,
-        /// The condition that they are about; `None` at the end.
+        /// The condition to which they refer; `None` at the end.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         after: Option<Label>,
         answers: Answers,
         simulated: bool,
     },
-    /// A person leaves out a trial, or a participant.
+    /// A person excludes a trial, or a participant.
     Excluded {
         participant: String,
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -132,11 +130,11 @@ pub enum Event {
         participant: Option<String>,
         text: String,
     },
-    /// The last line was incomplete, as a power cut leaves it, and was dropped.
+    /// The last line was incomplete, as after a power failure, and was dropped.
     TornLineDropped {
         bytes: u64,
     },
-    /// Somebody opened the assignment.
+    /// The assignment was revealed.
     Unblinded {
         who: String,
         why: String,
@@ -144,7 +142,7 @@ pub enum Event {
     },
 }
 
-/// The measures of a score that have a value.
+/// Returns the measures of a score that have a value.
 pub(crate) fn measures(score: &Score) -> Measures {
     score.measures().filter_map(|measure| Some((measure.key(), measure.value?))).collect()
 }

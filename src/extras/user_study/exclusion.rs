@@ -1,23 +1,22 @@
-//! Rules by which trials and participants are left out, written before the first trial.
+//! Rules for excluding trials and participants, set before the first trial.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Plan, Progress, State};
 
-/// One rule.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExclusionRule {
-    /// The measure that it looks at.
+    /// The measure to which it applies.
     pub measure: String,
     /// When it applies.
     pub is: Comparison,
-    /// What the measure is compared with, in its unit; not for `missing`.
+    /// Limit of the measure, in its unit; not for `missing`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// What is left out.
+    /// The trial or the participant.
     pub exclude: Excludes,
-    /// A participant is left out from so many such trials on; only for participants.
+    /// Number of such trials from which a participant is excluded; only for participants.
     #[serde(default = "once", skip_serializing_if = "is_once")]
     pub times: u32,
 }
@@ -34,7 +33,7 @@ pub enum Comparison {
     Missing,
 }
 
-/// What a rule leaves out.
+/// Scope of a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Excludes {
@@ -44,14 +43,13 @@ pub enum Excludes {
     Participant,
 }
 
-/// What is left out of the analysis, and why.
+/// An exclusion from the analysis, with its reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Exclusion {
-    /// Of whom.
     pub participant: String,
-    /// The number of the trial; all of them without one.
+    /// Number of the trial; `None` for all of them.
     pub trial: Option<u32>,
-    /// The rule in words, or what a person gave as the reason.
+    /// The rule as text, or the reason given by a person.
     pub why: String,
 }
 
@@ -89,7 +87,7 @@ impl ExclusionRule {
         }
     }
 
-    /// The rule in words.
+    /// Returns the rule as text.
     fn in_words(&self) -> String {
         let Self { measure, is, limit, times, .. } = self;
         let limit = limit.map_or_else(String::new, |limit| limit.to_string());
@@ -102,7 +100,7 @@ impl ExclusionRule {
     }
 }
 
-/// What the rules and the people of the study leave out, in the order of participants and trials.
+/// Returns the exclusions by rules and by people, in the order of participants and trials.
 pub(crate) fn exclusions(plan: &Plan, state: &State) -> Vec<Exclusion> {
     let mut all = Vec::new();
     for (participant, progress) in state.participants() {
@@ -122,7 +120,7 @@ pub(crate) fn exclusions(plan: &Plan, state: &State) -> Vec<Exclusion> {
     all
 }
 
-/// The trials with a result, and their measures.
+/// Returns the trials with a result, and their measures.
 fn made(progress: &Progress) -> impl Iterator<Item = (u32, impl Fn(&str) -> Option<f64>)> {
     progress.trials.iter().filter_map(|made| {
         let measures = made.measures.as_ref()?;

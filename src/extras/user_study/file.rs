@@ -1,4 +1,4 @@
-//! The study file (TOML): what is compared, with whom, in which order, and under which rules.
+//! The study file (TOML): conditions, participants, order, and rules.
 
 use std::{collections::BTreeSet, fmt};
 
@@ -8,62 +8,58 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Condition, ExclusionRule, Label, Questionnaire, telling};
 
-/// Maximum number of participants.
 pub const PARTICIPANTS_MAX: u32 = 200;
-/// Maximum number of trials under a condition.
 pub const TRIALS_MAX: u32 = 100;
-/// Maximum attempts at a trial.
 pub const ATTEMPTS_MAX: u32 = 10;
-/// Maximum practice trials.
 pub const PRACTICE_MAX: u32 = 200;
-/// Maximum trials between two breaks.
 pub const BREAK_AFTER_MAX: u32 = 1000;
-/// Longest break that can be required, s.
+/// Maximum required duration of a break, s.
 pub const BREAK_MAX_S: f64 = 7200.0;
 const NAME_MAX: usize = 120;
 
-/// A study, as its TOML file says it.
+/// A study in its TOML file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
     /// Name for screen and report. In a blind study it must not name a condition.
     pub name: String,
-    /// Scene: built-in name or file.
+    /// Built-in name or file.
     pub scene: String,
-    /// Rig: built-in name or file.
+    /// Built-in name or file.
     #[serde(default = "simulated")]
     pub rig: String,
-    /// Only so many rings of the scene, for a short trial.
+    /// Use only this many rings of the scene, for a short trial.
     #[serde(default)]
     pub rings: Option<u32>,
-    /// What is scored, in place of the scene's task.
+    /// The scored task, instead of the scene's.
     #[serde(default)]
     pub task: Option<TaskFile>,
-    /// The measure that decides, chosen before the first trial: a key of `docs/score.md`, with the hand where it has one.
+    /// The measure that decides, chosen before the first trial: a key of `docs/reference/measures.md`, with the hand where it has one.
     pub primary: String,
     /// Further measures of the report.
     #[serde(default)]
     pub secondary: Vec<String>,
-    /// How many participants.
+    /// Number of participants.
     pub participants: u32,
     /// Trials under each condition.
     pub trials: u32,
-    /// Nobody sees the conditions before the unblinding.
+    /// Whether the conditions are hidden until the unblinding.
     #[serde(default = "yes")]
     pub blind: bool,
-    /// Repeats orders and labels. Whoever knows it and this file can find out the labels: leave it out in a real study.
+    /// Makes orders and labels reproducible. With the seed and this file the labels can be found out: omit it in a real
+    /// study.
     #[serde(default)]
     pub seed: Option<u64>,
-    /// Record every trial as a session; in a blind study encrypted when the trial is over.
+    /// Whether every trial is recorded as a session; in a blind study the session is encrypted when the trial is over.
     #[serde(default)]
     pub record: bool,
-    /// What happens after an interrupted trial.
+    /// What to do after an interrupted trial.
     #[serde(default)]
     pub interrupted: Interrupted,
-    /// Attempts at a trial; after that it has no result.
+    /// Maximum attempts at a trial; after that it has no result.
     #[serde(default = "three")]
     pub attempts: u32,
-    /// What is compared.
+    /// The compared conditions.
     pub conditions: Vec<Condition>,
     /// The condition with which the others are compared, in the report after the unblinding.
     #[serde(default)]
@@ -74,64 +70,60 @@ pub struct StudyFile {
     /// After which trials the participant is shown the result.
     #[serde(default)]
     pub feedback: Feedback,
-    /// Breaks.
     #[serde(default)]
     pub breaks: Option<Breaks>,
-    /// Questionnaires.
     #[serde(default)]
     pub questionnaires: Questionnaires,
-    /// Which trials and participants are left out of the analysis.
+    /// Which trials and participants are excluded from the analysis.
     #[serde(default)]
     pub exclusion: Vec<ExclusionRule>,
 }
 
-/// What happens after a trial that was interrupted or given up.
+/// What to do after a trial that was interrupted or given up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Interrupted {
-    /// The trial is done again from its beginning, under the same condition, up to the number of attempts.
+    /// The trial is repeated from its beginning, under the same condition, up to the number of attempts.
     #[default]
     Repeat,
-    /// The session resumes with the next trial; the interrupted one has no result.
+    /// The session continues with the next trial; the interrupted one has no result.
     Resume,
 }
 
-/// Practice to criterion.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Practice {
-    /// Name of the condition that is practised; without it each in turn, in the participant's order.
+    /// Name of the condition for practice; by default each in turn, in the participant's order.
     #[serde(default)]
     pub under: Option<String>,
-    /// What happens if the criterion was not met in the most trials that are allowed.
+    /// What to do if the criterion was not met in the maximum number of trials.
     #[serde(default)]
     pub not_reached: NotReached,
     /// When practice is over.
     pub criterion: Criterion,
 }
 
-/// What happens to a participant who did not reach the criterion.
+/// What to do with a participant who did not meet the criterion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NotReached {
-    /// The trials follow all the same.
+    /// The trials follow nevertheless.
     #[default]
     GoOn,
     /// The participant is excluded.
     Exclude,
 }
 
-/// When a break is due.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Breaks {
-    /// After so many trials, practice included, since the last break.
+    /// Number of trials since the last break, including practice.
     pub after_trials: u32,
-    /// For at least so long, s.
+    /// Minimum duration, s.
     pub least_s: f64,
 }
 
-/// Which questionnaires are filled in when.
+/// Which questionnaires are filled in, and when.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Questionnaires {
@@ -141,7 +133,7 @@ pub struct Questionnaires {
     pub at_end: Vec<Questionnaire>,
 }
 
-/// Everything that is wrong with a study file.
+/// All mistakes in a study file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistakes(pub Vec<String>);
 
@@ -173,22 +165,22 @@ pub(crate) fn is_measure(key: &str) -> bool {
     measure_keys().any(|known| known == key)
 }
 
-/// The keys of all measures, in the order in which they are shown.
+/// Returns the keys of all measures, in display order.
 pub(crate) fn measure_keys() -> impl Iterator<Item = String> {
     MEASURES.iter().flat_map(|definition| keys_of(definition, &Side::LEFT_TO_RIGHT))
 }
 
-/// The keys of a measure: one for each of these hands, if it is measured for each.
+/// Returns the keys of a measure: one for each of these hands, if it is measured for each.
 pub fn keys_of(definition: &Definition, hands: &[Side]) -> Vec<String> {
     let of = |side: &Side| format!("{}_{}", definition.id, side.word());
     if definition.per_hand { hands.iter().map(of).collect() } else { vec![definition.id.to_owned()] }
 }
 
 impl StudyFile {
-    /// Reads and checks the text of a study file.
+    /// Parses and checks a study file.
     ///
     /// # Errors
-    /// [`Mistakes`]: every value that is wrong, or why the text cannot be read at all.
+    /// [`Mistakes`]: every wrong value, or why the text cannot be parsed at all.
     pub fn from_toml(text: &str) -> Result<Self, Mistakes> {
         let file: Self = nima_files::from_toml(text)
             .map_err(|misfit| Mistakes(vec![format!("line {}: {}", misfit.line(text), misfit.message())]))?;
@@ -196,10 +188,10 @@ impl StudyFile {
         Ok(file)
     }
 
-    /// Whether every value can be used.
+    /// Checks every value.
     ///
     /// # Errors
-    /// [`Mistakes`]: all that are wrong.
+    /// [`Mistakes`]: all wrong values.
     pub fn check(&self) -> Result<(), Mistakes> {
         let mut wrong = Vec::new();
         self.check_numbers(&mut wrong);
@@ -210,7 +202,7 @@ impl StudyFile {
             [("after_condition", &self.questionnaires.after_condition), ("at_end", &self.questionnaires.at_end)]
         {
             let twice = asked.iter().enumerate().find(|(at, one)| asked[..*at].contains(one));
-            wrong.extend(twice.map(|(_, one)| format!("questionnaires.{key}: {} is there twice", one.name())));
+            wrong.extend(twice.map(|(_, one)| format!("questionnaires.{key}: {} occurs twice", one.name())));
         }
         if self.blind {
             wrong.extend(self.told_by_name());
@@ -275,23 +267,26 @@ impl StudyFile {
             if !is_measure(key) {
                 let key = shown(key);
                 wrong.push(format!(
-                    "there is no measure \"{key}\": docs/score.md lists them; one of a hand ends with _left or _right"
+                    "there is no measure \"{key}\": docs/reference/measures.md lists them; one of a hand ends with _left or _right"
                 ));
             }
         }
         let mut seen = BTreeSet::new();
         let twice = measures.iter().find(|key| !seen.insert(key.as_str()));
-        wrong.extend(twice.map(|key| format!("measure {key} is there twice")));
+        wrong.extend(twice.map(|key| format!("measure {key} occurs twice")));
         for (at, rule) in self.exclusion.iter().enumerate() {
             let of = |mistake: String| format!("exclusion {}: {mistake}", at + 1);
             wrong.extend(rule.mistakes().into_iter().map(of));
             if self.blind && telling::tells(&rule.measure) {
-                wrong.push(of(format!("{} tells the condition, so a blind study cannot judge by it", rule.measure)));
+                wrong.push(of(format!(
+                    "{} reveals the condition, so a blind study cannot use it as its primary measure",
+                    rule.measure
+                )));
             }
         }
     }
 
-    /// What tells skill: the criterion of practice, or that of the study's task.
+    /// The criterion by which skill is judged: that of practice, or that of the study's task.
     pub(crate) fn skill(&self) -> Option<Criterion> {
         let practised = self.practice.as_ref().map(|practice| practice.criterion);
         practised.or_else(|| self.task.as_ref().map(|task| task.proficiency))
@@ -323,20 +318,20 @@ impl StudyFile {
         }
     }
 
-    /// A name that everybody reads must not say what is compared with what number.
+    /// A name that all users read must not reveal a condition or a number.
     fn told_by_name(&self) -> Option<String> {
         let words = |text: &str| format!(" {} ", split(text).join(" "));
         let name = words(&self.name);
         let told: Vec<String> = self.conditions.iter().flat_map(Condition::tells).collect();
         let told = told.iter().find(|word| !word.trim().is_empty() && name.contains(&words(word)))?;
         Some(format!(
-            "name: it contains \"{}\" of a condition, and everybody reads it: choose a neutral one",
+            "name: it contains \"{}\" of a condition, and all users read it: choose a neutral one",
             shown(told)
         ))
     }
 }
 
-/// Words and numbers of a text, in small letters.
+/// Words and numbers of a text, in lower case.
 fn split(text: &str) -> Vec<String> {
     let parts = text.split(|letter: char| !letter.is_alphanumeric() && letter != '.');
     parts.filter(|part| !part.is_empty()).map(|part| part.trim_matches('.').to_lowercase()).collect()

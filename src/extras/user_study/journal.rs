@@ -1,7 +1,8 @@
-//! The journal of a study: one line of JSON for each event, only ever appended to.
+//! The journal of a study: one line of JSON for each event, append-only.
 //!
-//! A line counts when it ends with a line break and is on the disk; [`Journal::append`] returns after that. What a power cut leaves behind
-//! the last line break was never confirmed: it is dropped and told, and nothing before it is touched.
+//! A line is valid when it ends with a line break and is on the disk; [`Journal::append`] returns after that. Bytes
+//! after the last line break, left by a power failure, were never confirmed: they are dropped and reported, and nothing
+//! before them is touched.
 
 use std::{
     fs::{File, OpenOptions, TryLockError},
@@ -11,29 +12,28 @@ use std::{
 
 use crate::{Entry, Event, StudyError};
 
-/// Largest journal that is read, bytes.
+/// Maximum journal that is read, bytes.
 const MOST: u64 = 256 << 20;
 
-/// An open journal.
 #[derive(Debug)]
 pub(crate) struct Journal {
     path: PathBuf,
     file: File,
     entries: u64,
-    /// Where the next line begins.
+    /// Start of the next line.
     end: u64,
 }
 
-/// What stands in a journal.
+/// Contents of a journal.
 #[derive(Debug)]
 pub(crate) struct Contents {
     pub(crate) entries: Vec<Entry>,
-    /// Bytes behind the last line break.
+    /// Bytes after the last line break.
     pub(crate) torn: u64,
     end: u64,
 }
 
-/// Reads a journal and leaves it as it is.
+/// Reads a journal without changing it.
 pub(crate) fn read(path: &Path) -> Result<Contents, StudyError> {
     let bytes = nima_files::read(path, MOST).map_err(StudyError::io(path))?;
     parse(path, &bytes)
@@ -44,8 +44,9 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Contents, StudyError> {
     let mut entries = Vec::new();
     for (line, text) in (1..).zip(bytes[..end].split_inclusive(|byte| *byte == b'\n')) {
         let damaged = |why: String| StudyError::Journal { path: path.to_owned(), line, why };
-        let entry: Entry = serde_json::from_slice(text)
-            .map_err(|error| damaged(format!("it is no line of a journal ({error}): restore the file from a copy")))?;
+        let entry: Entry = serde_json::from_slice(text).map_err(|error| {
+            damaged(format!("it is not a line of a journal ({error}): restore the file from a copy"))
+        })?;
         if entry.n != line {
             return Err(damaged(format!("it has number {}: lines are missing or were moved", entry.n)));
         }
@@ -55,18 +56,19 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Contents, StudyError> {
 }
 
 impl Journal {
-    /// Makes an empty one.
+    /// Creates an empty journal.
     pub(crate) fn create(path: &Path) -> Result<Self, StudyError> {
         let file = alone(OpenOptions::new().create_new(true), path)?;
         Ok(Self { path: path.to_owned(), file, entries: 0, end: 0 })
     }
 
-    /// Opens it for this program alone. A torn last line is cut off and told by an entry, which the caller finds among the contents.
+    /// Opens it exclusively. An incomplete last line is cut off and reported by an entry, which the caller finds among
+    /// the contents.
     pub(crate) fn open(path: &Path, at: &str) -> Result<(Self, Vec<Entry>), StudyError> {
         let mut file = alone(&mut OpenOptions::new(), path)?;
         let about = file.metadata().map_err(StudyError::io(path))?;
         if !about.is_file() || about.len() > MOST {
-            let why = "it is no journal: no regular file, or too large".to_owned();
+            let why = "it is not a journal: not a regular file, or too large".to_owned();
             return Err(StudyError::Damaged { path: path.to_owned(), why });
         }
         let mut bytes = Vec::new();
@@ -80,12 +82,12 @@ impl Journal {
         Ok((journal, entries))
     }
 
-    /// Writes a line; it is on the disk when this returns.
+    /// Appends a line; it is on the disk when this returns.
     pub(crate) fn append(&mut self, at: &str, event: Event) -> Result<Entry, StudyError> {
         let entry = Entry { n: self.entries + 1, at: at.to_owned(), event };
         let written = self.write(&entry);
         if written.is_err() {
-            // Half a line would stand before the next one.
+            // Otherwise half a line would precede the next one.
             self.file.set_len(self.end).ok();
         }
         self.end += written.map_err(StudyError::io(&self.path))?;
@@ -103,7 +105,7 @@ impl Journal {
     }
 }
 
-/// Opened to be written by this program alone; others may read it.
+/// Opens it for writing by this program only; others may read it.
 fn alone(options: &mut OpenOptions, path: &Path) -> Result<File, StudyError> {
     let in_use = || StudyError::InUse { folder: path.parent().unwrap_or_else(|| Path::new(".")).to_owned() };
     match lock(options.read(true).write(true), path) {
@@ -119,10 +121,10 @@ fn lock(options: &OpenOptions, path: &Path) -> Result<File, TryLockError> {
     file.try_lock().map(|()| file)
 }
 
-/// A lock would keep others from reading: nobody else may open it to write instead.
+/// A lock would keep others from reading; instead, no other program may open it for writing.
 #[cfg(windows)]
 fn lock(options: &mut OpenOptions, path: &Path) -> Result<File, TryLockError> {
-    // Of the Windows API.
+    // Constants of the Windows API.
     const SHARE_READ: u32 = 1;
     const SHARING_VIOLATION: i32 = 32;
     let opened = std::os::windows::fs::OpenOptionsExt::share_mode(options, SHARE_READ).open(path);

@@ -1,26 +1,24 @@
-//! How a participant learns: proficiency in practice, and the curve over all trials.
+//! Learning of a participant: proficiency in practice, and the curve over all trials.
 
 use nima_score::{LearningCurve, Standing};
 use serde::Serialize;
 
 use crate::{Progress, State};
 
-/// The learning of one participant.
 #[derive(Clone, Debug, Serialize)]
 pub struct Learning {
-    /// Whose.
+    /// Name of the participant.
     pub participant: String,
-    /// Practice trials.
     pub practice: u32,
-    /// Where practice stands; nothing without practice.
+    /// Progress of practice; `None` without practice.
     pub standing: Option<Standing>,
-    /// Completion times of all trials in order, practice first, s; nothing for one that was not completed.
+    /// Completion times of all trials in order, practice first, s; `None` for a trial that was not completed.
     pub times_s: Vec<Option<f64>>,
     /// The curve through them, if there are enough.
     pub curve: Option<LearningCurve>,
 }
 
-/// Of everybody who has begun.
+/// Returns the learning of every participant who has begun.
 pub(crate) fn learning(state: &State) -> Vec<Learning> {
     let began = state.participants().filter(|(_, progress)| progress.began);
     began.map(|(participant, progress)| of(participant, progress)).collect()

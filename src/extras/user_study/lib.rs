@@ -1,13 +1,13 @@
-//! User studies as a laboratory runs them: who does what next, under which condition, blind.
+//! User studies in a laboratory: the next step of each participant, and the condition, blind.
 //!
-//! [`StudyFile`] is what a person writes. [`Study::create`] makes a folder of it: pseudonyms, an order for each participant ([`order`]), labels
-//! A, B, ... in place of the conditions, and the assignment of labels to conditions, encrypted and committed to by its hash. Everything that
-//! happens goes into the folder's journal, a line per event, on the disk before the call returns. [`State`] (what is next for P03?) is a pure
-//! function of [`Plan`] and journal. Questionnaires are scored as published ([`Questionnaire`]); [`Study::trials`] gives the table for the
-//! analysis.
+//! A person writes a [`StudyFile`]. [`Study::create`] makes a folder of it: pseudonyms, an order for each participant
+//! ([`order`]), labels A, B, ... instead of the conditions, and the assignment of labels to conditions, encrypted and
+//! committed to by its hash. Every event is written to the folder's journal, one line each, and is on the disk before
+//! the call returns. [`State`] (for example the next step of P03) is a pure function of [`Plan`] and journal.
+//! Questionnaires are scored as published ([`Questionnaire`]); [`Study::trials`] returns the table for the analysis.
 //!
-//! This crate knows no loop, window, thread or clock: times are handed in as text. Whoever runs a trial asks [`Study::begin_trial`] for its
-//! condition, which nothing here prints.
+//! Independent of loop, window, threads and clocks: times are passed in as text. A program that runs a trial gets its
+//! condition from [`Study::begin_trial`]; nothing here prints it.
 //!
 //! ```
 //! use nima_user_study::{Step, Study, StudyFile};

@@ -1,12 +1,14 @@
 //! The order of conditions for each participant: Williams' Latin square, balanced for carry-over.
 //!
-//! In a square every condition stands once in each row and equally often in each place, and every ordered pair of neighbours is equally
-//! often there. An even number of conditions needs one square, an odd number two, which mirror each other (Williams 1949, Experimental
-//! designs balanced for the estimation of residual effects of treatments, Australian Journal of Scientific Research A 2:149-168).
+//! In a square every condition occurs once in each row and equally often in each position, and every ordered pair of
+//! neighbours occurs equally often. An even number of conditions needs one square, an odd number two, which mirror each
+//! other (Williams 1949, Experimental designs balanced for the estimation of residual effects of treatments, Australian
+//! Journal of Scientific Research A 2:149-168).
 
 use fastrand::Rng;
 
-/// The rows of the design for so many conditions: as many as conditions if that number is even, else twice as many.
+/// Returns the rows of the design for this number of conditions: as many rows as conditions if the number is even,
+/// otherwise twice as many.
 ///
 /// ```
 /// use nima_user_study::order::williams;
@@ -27,8 +29,8 @@ pub fn williams(conditions: usize) -> Vec<Vec<usize>> {
     square.into_iter().chain(mirrored).collect()
 }
 
-/// An order for each participant: whole designs one after the other, the rows of each in an order that the seed chooses. Balanced if the
-/// number of participants is a multiple of the number of rows.
+/// Returns an order for each participant: whole designs one after the other, each with its rows in an order determined
+/// by the seed. Balanced if the number of participants is a multiple of the number of rows.
 pub fn orders(conditions: usize, participants: usize, seed: u64) -> Vec<Vec<usize>> {
     let mut rng = Rng::with_seed(seed);
     let rows = williams(conditions);
@@ -42,7 +44,7 @@ pub fn orders(conditions: usize, participants: usize, seed: u64) -> Vec<Vec<usiz
     orders
 }
 
-/// Which condition each label stands for.
+/// Returns the condition of each label.
 pub fn assignment(conditions: usize, seed: u64) -> Vec<usize> {
     let mut all: Vec<usize> = (0..conditions).collect();
     Rng::with_seed(seed).shuffle(&mut all);

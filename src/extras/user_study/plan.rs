@@ -1,4 +1,4 @@
-//! What everybody may know of a study: `study.toml` in its folder.
+//! The public part of a study: `study.toml` in its folder.
 
 use nima_score::{Criterion, Feedback};
 use serde::{Deserialize, Serialize};
@@ -7,53 +7,48 @@ use crate::{
     Breaks, ExclusionRule, Interrupted, Label, NotReached, Practice, Questionnaires, StudyError, StudyFile, order, seal,
 };
 
-/// Of the form of the file: the first without feedback.
+/// Version of the file's format: version 1 had no feedback.
 const VERSION: u32 = 2;
 const OLDEST: u32 = 1;
 
-/// A study without its conditions. What comes next follows from it and the journal.
+/// A study without its conditions. The next step follows from it and the journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
     version: u32,
     /// Name for screen and report.
     pub name: String,
-    /// Rig: built-in name or file.
+    /// Built-in name or file.
     pub rig: String,
-    /// The measure that decides.
+    /// The primary measure.
     pub primary: String,
     /// Further measures of the report.
     pub secondary: Vec<String>,
     /// Trials under each condition.
     pub trials: u32,
-    /// Whether nobody sees the conditions before the unblinding.
+    /// Whether the conditions are hidden until the unblinding.
     pub blind: bool,
     /// Whether trials are recorded.
     pub record: bool,
-    /// What happens after an interrupted trial.
+    /// What to do after an interrupted trial.
     pub interrupted: Interrupted,
-    /// Attempts at a trial.
+    /// Maximum attempts at a trial.
     pub attempts: u32,
-    /// The labels of the conditions.
     pub labels: Vec<Label>,
-    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that nobody changed it.
+    /// BLAKE2b-256 of the sealed assignment, in hexadecimal digits: proves later that it was not changed.
     pub commitment: String,
     /// When practice is over.
     pub practice: Option<Practising>,
-    /// After which trials the participant is shown the result, and the criterion that tells skill.
+    /// After which trials the participant is shown the result, and the criterion by which skill is judged.
     #[serde(default)]
     pub feedback: Told,
-    /// When breaks are due.
     pub breaks: Option<Breaks>,
-    /// Which questionnaires are filled in when.
+    /// Which questionnaires are filled in, and when.
     pub questionnaires: Questionnaires,
-    /// Rules of exclusion.
     pub exclusion: Vec<ExclusionRule>,
-    /// The participants.
     pub participants: Vec<Participant>,
 }
 
-/// Practice, without its condition.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Practising {
@@ -65,24 +60,23 @@ pub struct Practising {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Told {
-    /// The rule.
     pub rule: Feedback,
-    /// What tells skill.
+    /// The criterion by which skill is judged.
     pub criterion: Criterion,
 }
 
-/// One who takes part, by a pseudonym.
+/// A participant, by a pseudonym.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Participant {
     /// P01, P02, ...
     pub name: String,
-    /// The labels in the order in which this one meets them.
+    /// The labels in this participant's order.
     pub order: Vec<Label>,
 }
 
 impl Plan {
-    /// Of a file that was checked.
+    /// Draws a plan for a checked file.
     pub(crate) fn draw(file: &StudyFile, commitment: String) -> std::io::Result<Self> {
         let labels = Label::first(file.conditions.len());
         let seed = match file.seed {
@@ -130,10 +124,10 @@ impl Plan {
         }
     }
 
-    /// The participant of this name.
+    /// Returns the participant of this name.
     ///
     /// # Errors
-    /// [`StudyError::Participant`] names those that there are.
+    /// [`StudyError::Participant`] with the existing names.
     pub fn participant(&self, name: &str) -> Result<&Participant, StudyError> {
         let known = || match self.participants.as_slice() {
             [first, .., last] => format!("{} to {}", first.name, last.name),
@@ -143,17 +137,17 @@ impl Plan {
         found.ok_or_else(|| StudyError::Participant { name: nima_files::quoted(name), known: known() })
     }
 
-    /// Trials of each participant, practice not counted.
+    /// Trials of each participant, without practice.
     pub fn trials_of_each(&self) -> u32 {
         self.trials * self.labels.len() as u32
     }
 
-    /// The label of a trial, counted from 1; `None` beyond the last one.
+    /// Returns the label of a trial, counted from 1; `None` beyond the last one.
     pub(crate) fn label(&self, participant: &Participant, number: u32) -> Option<Label> {
         participant.order.get((number.checked_sub(1)? / self.trials.max(1)) as usize).copied()
     }
 
-    /// Rows of the design that balances the orders; the number of participants should be a multiple of it.
+    /// Returns the rows of the design that balances the orders; the number of participants should be a multiple of it.
     pub fn rows(&self) -> usize {
         order::williams(self.labels.len()).len()
     }

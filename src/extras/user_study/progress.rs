@@ -1,4 +1,4 @@
-//! What one participant has done, and what follows from it.
+//! Progress of one participant.
 
 use std::collections::BTreeMap;
 
@@ -10,59 +10,58 @@ use crate::{
     TrialId,
 };
 
-/// A trial that counts and is over.
+/// A finished trial that counts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Made {
-    /// Its number, from 1.
+    /// From 1.
     pub number: u32,
-    /// What stands for its condition.
+    /// The label of its condition.
     pub label: Label,
     /// The attempt that counts, or the last one.
     pub attempt: u32,
     /// How it ended; `None` without a result.
     pub ending: Option<Ending>,
-    /// Its measures; `None` without a result.
+    /// `None` without a result.
     pub measures: Option<Measures>,
-    /// Measures that tell the condition, encrypted.
+    /// Measures that reveal the condition, encrypted.
     #[serde(skip)]
     pub withheld: Option<String>,
-    /// By a simulated person.
+    /// Whether it was done by a simulated person.
     pub simulated: bool,
-    /// Made after the unblinding of a blind study.
+    /// Whether it was made after the unblinding of a blind study.
     pub unblinded: bool,
 }
 
-/// What one participant has done.
+/// Progress of one participant.
 #[derive(Clone, Debug, Default)]
 pub struct Progress {
-    /// Has begun.
+    /// Whether the participant has begun.
     pub began: bool,
     /// Times of the practice trials, s; NaN for one that was not completed.
     pub practice_s: Vec<f64>,
-    /// Practice, if there is any.
+    /// `None` without practice.
     pub practice: Option<Proficiency>,
     /// Which results are shown to the participant.
     guidance: Option<Guidance>,
-    /// The trials that are over, in order.
+    /// The finished trials, in order.
     pub trials: Vec<Made>,
     /// Breaks taken, s.
     pub breaks_s: Vec<f64>,
-    /// Answers, each with the condition that they are about, and whether they were simulated.
+    /// Answers, each with the condition to which they refer, and whether they were simulated.
     pub answers: Vec<(Option<Label>, Answers, bool)>,
     /// Why the participant is excluded.
     pub excluded: Option<String>,
-    /// Trials that a person left out, and why.
+    /// Trials excluded by a person, with the reasons.
     pub excluded_trials: BTreeMap<u32, String>,
-    /// Attempts that were interrupted or given up, in all.
+    /// Total number of attempts that were interrupted or given up.
     pub interruptions: u32,
-    /// Attempts at the present trial that are over.
+    /// Finished attempts at the current trial.
     attempts: u32,
     open: Option<(TrialId, bool)>,
     since_break: u32,
 }
 
 impl Progress {
-    /// Before the first step.
     pub(crate) fn of(plan: &Plan) -> Self {
         let guidance = Guidance::new(plan.feedback.rule, plan.feedback.criterion);
         let practice = plan.practice.map(|practice| Proficiency::new(practice.criterion));
@@ -74,18 +73,18 @@ impl Progress {
         self.since_break = 0;
     }
 
-    /// The trial that has begun and not ended.
+    /// Returns the trial that has begun and not ended.
     pub fn open(&self) -> Option<TrialId> {
         self.open.map(|(trial, _)| trial)
     }
 
-    /// Whether the participant may be shown the result of the trial that ended last: it follows from the rule of the study and this one's own
-    /// trials, practice included.
+    /// Whether the participant may be shown the result of the last finished trial: it follows from the rule of the
+    /// study and this participant's trials, including practice.
     pub fn shows_result(&self) -> bool {
         self.guidance.as_ref().is_none_or(Guidance::is_shown)
     }
 
-    /// Trials made since the last break, practice included.
+    /// Trials made since the last break, including practice.
     pub const fn since_break(&self) -> u32 {
         self.since_break
     }
@@ -112,7 +111,7 @@ impl Progress {
                 None => return Step::Done { why: Done::Finished },
             }
         };
-        // A trial that is repeated follows at once; the break is due after it.
+        // A repeated trial follows at once; the break is due after it.
         match plan.breaks {
             Some(breaks) if attempt == 1 && self.since_break >= breaks.after_trials => {
                 Step::Break { least_s: breaks.least_s }
@@ -121,7 +120,7 @@ impl Progress {
         }
     }
 
-    /// The questionnaire that is due after so many trials.
+    /// Returns the questionnaire that is due after this many trials.
     fn asked(&self, plan: &Plan, participant: &Participant, made: u32) -> Option<Step> {
         let is_answered = |questionnaire: Questionnaire, after: Option<Label>| {
             self.answers.iter().any(|(of, answers, _)| answers.questionnaire() == questionnaire && *of == after)
@@ -197,7 +196,7 @@ impl Progress {
         }
     }
 
-    /// Done again until the attempts are over; by the other rule a trial that counts is over at once.
+    /// The trial is repeated until no attempts are left; by the other rule a trial that counts is over at once.
     pub(crate) fn interrupt(
         &mut self,
         plan: &Plan,
@@ -215,7 +214,7 @@ impl Progress {
     }
 }
 
-/// What a criterion judges by: completion time, s, and drops out of view.
+/// Returns the values that a criterion judges: completion time, s, and drops out of view.
 fn judged(measures: &Measures) -> (Option<f64>, u32) {
     let drops = measures.get("drops_out_of_view").copied().unwrap_or(0.0);
     (measures.get("completion_time_s").copied(), drops as u32)

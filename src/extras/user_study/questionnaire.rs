@@ -1,22 +1,23 @@
 //! Questionnaires and their published scores.
 //!
-//! - **NASA-TLX**: six ratings from 0 to 100 in steps of 5. Raw: their mean (Hart 2006, NASA-Task Load Index; 20 years later, Proc. HFES
-//!   50:904-908). Weighted: of each of the 15 pairs of scales the one that contributed more to the workload is chosen; a scale's weight is how
-//!   often it was, and the score is the sum of weight times rating over 15 (Hart and Staveland 1988, Advances in Psychology 52:139-183).
-//! - **SUS**: ten items from 1 to 5; odd ones count their value less 1, even ones 5 less their value, and the sum is multiplied by 2.5 (Brooke
-//!   1996, SUS: a quick and dirty usability scale, in Usability Evaluation in Industry, 189-194).
-//! - **Realism**: one item from 1 to 7, ours; it has no published scale.
-//! - **Free text**: kept, not scored.
+//! - **NASA-TLX**: six ratings from 0 to 100 in steps of 5. Raw: their mean (Hart 2006, NASA-Task Load Index; 20 years
+//!   later, Proc. HFES 50:904-908). Weighted: in each of the 15 pairs of scales the one that contributed more to the
+//!   workload is chosen; the weight of a scale is the number of times it was chosen, and the score is the sum of weight
+//!   times rating over 15 (Hart and Staveland 1988, Advances in Psychology 52:139-183).
+//! - **SUS**: ten items from 1 to 5; odd ones count their value minus 1, even ones 5 minus their value, and the sum is
+//!   multiplied by 2.5 (Brooke 1996, SUS: a quick and dirty usability scale, in Usability Evaluation in Industry,
+//!   189-194).
+//! - **Realism**: our own item from 1 to 7, without a published scale.
+//! - **Free text**: stored, not scored.
 
 use serde::{Deserialize, Serialize};
 
-/// A questionnaire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Questionnaire {
     /// NASA-TLX without weights (raw TLX).
     NasaTlx,
-    /// NASA-TLX with the comparison of 15 pairs; its raw score is there too.
+    /// NASA-TLX with the comparison of 15 pairs; it also gives the raw score.
     NasaTlxWeighted,
     /// System usability scale.
     Sus,
@@ -27,10 +28,8 @@ pub enum Questionnaire {
 }
 
 impl Questionnaire {
-    /// Every questionnaire.
     pub const ALL: [Self; 5] = [Self::NasaTlx, Self::NasaTlxWeighted, Self::Sus, Self::Realism, Self::FreeText];
 
-    /// Its name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NasaTlx => "nasa_tlx",
@@ -42,7 +41,6 @@ impl Questionnaire {
     }
 }
 
-/// A scale of the NASA-TLX.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TlxScale {
@@ -116,12 +114,12 @@ pub fn raw_tlx(ratings: &[u8; 6]) -> f64 {
     ratings.iter().map(|rating| f64::from(*rating)).sum::<f64>() / 6.0
 }
 
-/// Sum of weight times rating over 15; a weight is how often the scale was `chosen` from the [`PAIRS`].
+/// Sum of weight times rating over 15; the weight is how often the scale was `chosen` from the [`PAIRS`].
 ///
 /// ```
 /// use nima_user_study::{PAIRS, weighted_tlx};
 ///
-/// // Whoever takes the first of each pair gives the weights 5, 4, 3, 2, 1, 0.
+/// // Choosing the first of each pair gives the weights 5, 4, 3, 2, 1, 0.
 /// let chosen = PAIRS.map(|(first, _)| first);
 /// assert_eq!(weighted_tlx(&[60, 30, 45, 30, 15, 100], &chosen), (300 + 120 + 135 + 60 + 15) as f64 / 15.0);
 /// ```
@@ -132,7 +130,7 @@ pub fn weighted_tlx(ratings: &[u8; 6], chosen: &[TlxScale; 15]) -> f64 {
     sum / 15.0
 }
 
-/// The score of the SUS, 0 to 100, from ten answers of 1 to 5.
+/// Returns the score of the SUS, 0 to 100, from ten answers of 1 to 5.
 ///
 /// ```
 /// // The example of Brooke 1996, whose sum is 22.

@@ -1,8 +1,9 @@
-//! Encryption of what nobody may read before the unblinding.
+//! Encryption of data that must remain unreadable until the unblinding.
 //!
-//! ChaCha20-Poly1305 in pieces of 64 KiB: each sealed text has a key of its own, made of the study's key, a random salt and the purpose, and
-//! its pieces are numbered, the last one marked. A piece that was changed, exchanged, or cut off is refused. (The construction is STREAM:
-//! Hoang, Reyhanitabar, Rogaway and Vizár 2015, Online authenticated-encryption and its nonce-reuse misuse-resistance.)
+//! ChaCha20-Poly1305 in pieces of 64 KiB: each sealed text has its own key, derived from the study's key, a random salt
+//! and the purpose, and its pieces are numbered, with the last one marked. A piece that was changed, swapped, or cut
+//! off is refused. (The construction is STREAM: Hoang, Reyhanitabar, Rogaway and Vizár 2015, Online
+//! authenticated-encryption and its nonce-reuse misuse-resistance.)
 
 use std::io::{self, Read, Write};
 
@@ -24,7 +25,7 @@ impl std::fmt::Debug for Key {
     }
 }
 
-/// Random bytes of the system.
+/// Random bytes from the system.
 pub(crate) fn random<const N: usize>() -> io::Result<[u8; N]> {
     let mut bytes = [0; N];
     getrandom::fill(&mut bytes).map_err(|error| io::Error::other(format!("no random numbers: {error}")))?;
@@ -67,7 +68,7 @@ impl Key {
         ChaCha20Poly1305::new(&of.finalize())
     }
 
-    /// Encrypts all that `from` gives.
+    /// Encrypts everything read from `from`.
     pub(crate) fn seal_stream(&self, purpose: &str, mut from: impl Read, mut to: impl Write) -> io::Result<()> {
         let salt = random::<SALT>()?;
         let cipher = self.cipher(&salt, purpose);
@@ -89,16 +90,16 @@ impl Key {
         to.flush()
     }
 
-    /// Decrypts what [`Key::seal_stream`] wrote. On an error what was written is to be thrown away.
+    /// Decrypts the output of [`Key::seal_stream`]. On an error the output must be discarded.
     pub(crate) fn open_stream(&self, purpose: &str, mut from: impl Read, mut to: impl Write) -> io::Result<()> {
         let refused = |why: &str| io::Error::new(io::ErrorKind::InvalidData, why);
         let mut head = [0; 8 + SALT];
-        from.read_exact(&mut head).map_err(|_| refused("it is no sealed file, or it was cut off"))?;
+        from.read_exact(&mut head).map_err(|_| refused("it is not a sealed file, or it was cut off"))?;
         let (magic, salt) = head.split_at(8);
         if magic != MAGIC {
-            return Err(refused("it is no sealed file"));
+            return Err(refused("it is not a sealed file"));
         }
-        let salt: [u8; SALT] = salt.try_into().map_err(|_| refused("it is no sealed file"))?;
+        let salt: [u8; SALT] = salt.try_into().map_err(|_| refused("it is not a sealed file"))?;
         let cipher = self.cipher(&salt, purpose);
         let mut sealed = Vec::with_capacity(PIECE + TAG);
         for number in 0.. {
@@ -125,7 +126,7 @@ impl Key {
     }
 
     pub(crate) fn open(&self, purpose: &str, sealed: &str) -> io::Result<Vec<u8>> {
-        let refused = || io::Error::new(io::ErrorKind::InvalidData, "it is no sealed text");
+        let refused = || io::Error::new(io::ErrorKind::InvalidData, "it is not a sealed text");
         let mut plain = Vec::new();
         self.open_stream(purpose, from_hex(sealed).ok_or_else(refused)?.as_slice(), &mut plain)?;
         Ok(plain)

@@ -1,4 +1,4 @@
-//! Which label stands for which condition.
+//! The assignment of labels to conditions.
 
 use std::collections::BTreeMap;
 
@@ -6,12 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Condition, Label, StudyFile, order, seal};
 
-/// The assignment as it is sealed, committed to, and shown after the unblinding. Its `Debug` shows nothing of it.
+/// The assignment in the form that is sealed, committed to, and shown after the unblinding. Its `Debug` shows nothing
+/// of it.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub struct Opened {
-    /// Random, so that nobody finds the few possible assignments by hashing them all.
+    /// Random, so that the few possible assignments cannot be found by hashing them all.
     salt: String,
-    /// Which label stands for which condition, by name.
+    /// The condition of each label, by name.
     labels: BTreeMap<Label, String>,
     conditions: Vec<Condition>,
     reference: Option<String>,
@@ -26,9 +27,9 @@ impl std::fmt::Debug for Opened {
 }
 
 impl Opened {
-    /// Of a file that was checked.
+    /// Draws an assignment for a checked file.
     pub(crate) fn draw(file: &StudyFile) -> std::io::Result<Self> {
-        // Drawn apart from the seed of the orders, which everybody sees.
+        // Drawn separately from the seed of the orders, which is public.
         let seed = match file.seed {
             Some(seed) => seed ^ 0x6c61_6265_6c73,
             None => u64::from_le_bytes(seal::random()?),
@@ -45,17 +46,17 @@ impl Opened {
         })
     }
 
-    /// The condition that a label stands for.
+    /// Returns the condition of a label.
     pub fn condition(&self, label: Label) -> Option<&Condition> {
         self.named(self.labels.get(&label)?)
     }
 
-    /// Every label with the name of its condition.
+    /// Returns every label with the name of its condition.
     pub fn labels(&self) -> impl Iterator<Item = (Label, &str)> {
         self.labels.iter().map(|(label, name)| (*label, name.as_str()))
     }
 
-    /// The condition with which others are compared.
+    /// The condition with which the others are compared.
     pub fn reference(&self) -> Option<&str> {
         self.reference.as_deref()
     }

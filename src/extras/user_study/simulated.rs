@@ -1,26 +1,25 @@
-//! Simulated people: skill, learning, fatigue and answers, the same for the same seed.
+//! Simulated people: skill, learning, fatigue and answers, reproducible with the same seed.
 //!
 //! They test the whole way from a study file to its report before the first person comes. They feel: what is more than the force that a person
-//! means to use slows the hand down, and it gives way (`docs/studies.md`). They are no model of surgeons: the spread of skill and intended force is
+//! means to use slows the hand down, and it gives way (`docs/simulated.md`). They are no model of surgeons: the spread of skill and intended force is
 //! made up, and their answers do not depend on the condition.
 
 use fastrand::Rng;
 
 use crate::{Answers, PAIRS, Questionnaire, Ratings};
 
-/// One simulated participant.
 #[derive(Clone, Debug)]
 pub struct Person {
     seed: u64,
-    /// What the pace of an expert is multiplied by.
+    /// Factor on an expert's pace.
     skill: f64,
-    /// How much slower the first trial is, as a share, and the trials in which that falls to 1/e.
+    /// Relative slowness of the first trial, and number of trials in which it falls to 1/e.
     slower: f64,
     learns_in: f64,
-    /// What each trial since the last break slows down, as a share.
+    /// Relative slowdown per trial since the last break.
     tires: f64,
     tremor_m: f64,
-    /// The force that this one means to use, N.
+    /// The intended force, N.
     intended_n: f64,
     /// Mean answers.
     load: [f64; 6],
@@ -30,17 +29,17 @@ pub struct Person {
 /// A hand in one trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    /// Speed of all movements, 1 as the scene has it.
+    /// Speed of all movements, 1 as in the scene.
     pub pace: f64,
     /// Amplitude of the tremor, m.
     pub tremor_m: f64,
-    /// The force that it means to feel, N: more slows it down, and it gives way. `None` for one that feels nothing.
+    /// The intended force, N: more slows it down, and it yields. `None` for a hand without force perception.
     pub intended_n: Option<f64>,
-    /// Of its random sequences.
+    /// Seed of its random sequences.
     pub seed: u64,
 }
 
-/// A deviate of the standard normal distribution, nearly: the sum of twelve uniform ones.
+/// An approximately standard normal number: the sum of twelve uniform ones.
 fn normal(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
@@ -67,7 +66,8 @@ impl Person {
         }
     }
 
-    /// The hand after so many trials, practice included, so many of them since the last break; in this attempt, from 1.
+    /// Returns the hand after this many trials, including practice, and this many since the last break; in this
+    /// attempt, from 1.
     pub fn hand(&self, made: u32, since_break: u32, attempt: u32) -> Hand {
         let learning = 1.0 + self.slower * (-f64::from(made) / self.learns_in).exp();
         let fatigue = 1.0 + self.tires * f64::from(since_break);
@@ -79,7 +79,7 @@ impl Person {
         }
     }
 
-    /// Answers, after so many trials.
+    /// Returns answers after this many trials.
     pub fn answers(&self, questionnaire: Questionnaire, made: u32) -> Answers {
         let mut rng = Rng::with_seed(self.seed ^ (u64::from(made) << 32) ^ questionnaire as u64);
         let ratings = Ratings::of(self.load.map(|load| {

@@ -1,4 +1,4 @@
-//! Where a study stands: a pure function of its plan and its journal.
+//! The state of a study: a pure function of its plan and its journal.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,13 @@ use serde::Serialize;
 
 use crate::{Done, Entry, Event, Participant, Plan, Progress, Step};
 
-/// The unblinding.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Unblinding {
-    /// Who asked for it.
+    /// The person who requested it.
     pub who: String,
-    /// Why.
+    /// The reason.
     pub why: String,
-    /// When.
+    /// The time.
     pub at: String,
     /// Trials that had a result then.
     pub trials_before: usize,
@@ -21,30 +20,29 @@ pub struct Unblinding {
     pub complete: bool,
 }
 
-/// Where a study stands.
+/// The state of a study.
 #[derive(Clone, Debug)]
 pub struct State {
     participants: BTreeMap<String, Progress>,
     /// The first unblinding.
     pub unblinding: Option<Unblinding>,
-    /// Notes: when, about whom, what.
+    /// Notes: time, participant, text.
     pub notes: Vec<(String, Option<String>, String)>,
-    /// Lines that a power cut tore, bytes.
+    /// Lengths of incomplete lines left by power failures, bytes.
     pub torn: Vec<u64>,
 }
 
 impl State {
-    /// Before the first entry.
     pub fn new(plan: &Plan) -> Self {
         let participants =
             plan.participants.iter().map(|participant| (participant.name.clone(), Progress::of(plan))).collect();
         Self { participants, unblinding: None, notes: Vec::new(), torn: Vec::new() }
     }
 
-    /// After these entries.
+    /// Returns the state after these entries.
     ///
     /// # Errors
-    /// The number of the first entry that cannot follow those before it, and why.
+    /// The number of the first entry that cannot follow the earlier ones, and the reason.
     pub fn of<'a>(plan: &Plan, entries: impl IntoIterator<Item = &'a Entry>) -> Result<Self, (u64, String)> {
         let mut state = Self::new(plan);
         for entry in entries {
@@ -53,12 +51,12 @@ impl State {
         Ok(state)
     }
 
-    /// The participants and what they have done, in the order of their names.
+    /// Returns the participants and their progress, in the order of their names.
     pub fn participants(&self) -> impl Iterator<Item = (&str, &Progress)> {
         self.participants.iter().map(|(name, progress)| (name.as_str(), progress))
     }
 
-    /// What this one has done.
+    /// Returns the progress of this participant.
     pub fn progress(&self, participant: &str) -> Option<&Progress> {
         self.participants.get(participant)
     }
@@ -68,19 +66,19 @@ impl State {
         !plan.blind || self.unblinding.is_some()
     }
 
-    /// Trials with a result.
+    /// Number of trials with a result.
     pub fn results(&self) -> usize {
         self.participants.values().flat_map(|one| &one.trials).filter(|made| made.measures.is_some()).count()
     }
 
-    /// Whether some of it was done by simulated people.
+    /// Whether parts of it were done by simulated people.
     pub fn is_simulated(&self) -> bool {
         let simulated =
             |one: &Progress| one.trials.iter().any(|made| made.simulated) || one.answers.iter().any(|given| given.2);
         self.participants.values().any(simulated)
     }
 
-    /// What this participant does next.
+    /// Returns the next step of this participant.
     pub fn next(&self, plan: &Plan, participant: &Participant) -> Step {
         let Some(progress) = self.participants.get(&participant.name) else {
             return Step::Done { why: Done::Excluded };
@@ -88,10 +86,10 @@ impl State {
         progress.next(plan, participant)
     }
 
-    /// Takes the next entry.
+    /// Applies the next entry.
     ///
     /// # Errors
-    /// Why it cannot follow those before it.
+    /// Why it cannot follow the earlier ones.
     pub(crate) fn take(&mut self, plan: &Plan, entry: &Entry) -> Result<(), String> {
         let unblinded = plan.blind && self.unblinding.is_some();
         match &entry.event {
@@ -168,7 +166,7 @@ impl State {
     }
 }
 
-/// A participant, and what this one has done.
+/// Returns a participant with its progress.
 fn found<'a>(
     plan: &'a Plan,
     participants: &'a mut BTreeMap<String, Progress>,

@@ -1,49 +1,43 @@
-//! What a participant does next.
+//! The next step of a participant.
 
 use serde::Serialize;
 
 use crate::{Label, Phase, Questionnaire, TrialId};
 
-/// What a participant does next.
+/// The next step of a participant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "step", rename_all = "snake_case")]
 pub enum Step {
-    /// A trial for practice.
+    /// A practice trial.
     Practice {
-        /// Its number, from 1.
+        /// From 1.
         number: u32,
         /// From 1.
         attempt: u32,
     },
     /// A trial that counts.
     Trial {
-        /// Its number, from 1.
+        /// From 1.
         number: u32,
         /// From 1.
         attempt: u32,
-        /// What stands for its condition.
+        /// The label of its condition.
         label: Label,
     },
-    /// A break.
     Break {
-        /// For at least so long, s.
+        /// Minimum duration, s.
         least_s: f64,
     },
-    /// A questionnaire.
     Questionnaire {
-        /// Which.
         questionnaire: Questionnaire,
-        /// About which condition; `None` at the end.
+        /// The condition to which it refers; `None` at the end.
         after: Option<Label>,
     },
-    /// A trial has begun and has not ended: it runs, or the program ended in the middle of it.
-    Running {
-        /// Which.
-        trial: TrialId,
-    },
+    /// A trial has begun and has not ended: it is running, or the program ended in the middle of it.
+    Running { trial: TrialId },
     /// Nothing.
     Done {
-        /// Why.
+        /// The reason.
         why: Done,
     },
 }
@@ -52,14 +46,14 @@ pub enum Step {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Done {
-    /// All was done.
+    /// All steps are finished.
     Finished,
     /// The participant is excluded.
     Excluded,
 }
 
 impl Step {
-    /// The trial that it is, with its label if it counts.
+    /// Returns the trial of this step, with its label if it counts.
     pub(crate) fn trial(&self) -> Option<(TrialId, Option<Label>)> {
         match *self {
             Self::Practice { number, attempt } => Some((TrialId { phase: Phase::Practice, number, attempt }, None)),

@@ -1,4 +1,4 @@
-//! The folder of a study, and all that can be done with it.
+//! The folder of a study, and the operations on it.
 
 mod acts;
 mod making;
@@ -27,20 +27,20 @@ const SCENE: &str = "scene.toml";
 const SEALED: &str = "conditions.sealed";
 const OPENED: &str = "conditions.json";
 const KEY: &str = "study.key";
-/// What is encrypted.
+/// Purpose of the encryption.
 const CONDITIONS: &str = "conditions";
 const MEASURES: &str = "measures";
 
-/// An open study. Its `Debug` does not tell the conditions.
+/// An open study. Its `Debug` does not reveal the conditions.
 pub struct Study {
     folder: PathBuf,
     plan: Plan,
     scene: String,
     key: Key,
-    /// What was committed to, letter by letter.
+    /// The exact text that was committed to.
     secret_text: String,
     secret: Opened,
-    /// None for reading only.
+    /// `None` if it was opened for reading only.
     journal: Option<Journal>,
     state: State,
 }
@@ -57,10 +57,11 @@ impl fmt::Debug for Study {
 }
 
 impl Study {
-    /// Opens it to go on, for this program alone. A trial that had begun and has not ended was interrupted: that is written down.
+    /// Opens the study exclusively for writing. A trial that had begun and has not ended was interrupted, which is
+    /// recorded.
     ///
     /// # Errors
-    /// No study there, another program that has it open, a file that was changed or damaged.
+    /// There is no study, another program has it open, or a file was changed or damaged.
     pub fn open(folder: &Path, at: &str) -> Result<Self, StudyError> {
         let mut study = Self::load(folder)?;
         let path = folder.join(JOURNAL);
@@ -76,7 +77,7 @@ impl Study {
         Ok(study)
     }
 
-    /// Opens it to look at it: nothing is changed, and another program may have it open.
+    /// Opens the study for reading: nothing is changed, and another program may have it open.
     ///
     /// # Errors
     /// As [`Study::open`].
@@ -85,7 +86,7 @@ impl Study {
         let path = folder.join(JOURNAL);
         let contents = journal::read(&path)?;
         study.follow(&path, &contents.entries)?;
-        // Another program may be writing this line just now; who opens the study cuts it off.
+        // Another program may be writing this line now; opening the study for writing cuts it off.
         if contents.torn > 0 {
             study.state.torn.push(contents.torn);
         }
@@ -99,7 +100,7 @@ impl Study {
         };
         let damaged = |name: &str, why: String| StudyError::Damaged { path: folder.join(name), why };
         let plan = Plan::parse(&text(PLAN)?).map_err(|why| damaged(PLAN, why))?;
-        let key = Key::from_hex(&text(KEY)?).ok_or_else(|| damaged(KEY, "it is no key of a study".to_owned()))?;
+        let key = Key::from_hex(&text(KEY)?).ok_or_else(|| damaged(KEY, "it is not a key of a study".to_owned()))?;
         let plain = key.open(CONDITIONS, &text(SEALED)?).map_err(|error| damaged(SEALED, error.to_string()))?;
         if seal::hash(&plain) != plan.commitment {
             let why = "the assignment does not fit to the commitment in study.toml: one of them was changed".to_owned();
@@ -123,12 +124,11 @@ impl Study {
         Ok(())
     }
 
-    /// Its folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// What everybody may know of it.
+    /// The public part of the study.
     pub const fn plan(&self) -> &Plan {
         &self.plan
     }
@@ -138,41 +138,41 @@ impl Study {
         &self.scene
     }
 
-    /// Where it stands.
+    /// Its current state.
     pub const fn state(&self) -> &State {
         &self.state
     }
 
-    /// The assignment, where it may be shown: after the unblinding, or in a study that is not blind.
+    /// The assignment if it may be shown: after the unblinding, or in a study that is not blind.
     pub fn opened(&self) -> Option<&Opened> {
         self.state.is_open(&self.plan).then_some(&self.secret)
     }
 
-    /// What this participant does next.
+    /// Returns the next step of this participant.
     ///
     /// # Errors
-    /// [`StudyError::Participant`].
+    /// [`StudyError::Participant`] if there is no such participant.
     pub fn next(&self, participant: &str) -> Result<Step, StudyError> {
         Ok(self.state.next(&self.plan, self.plan.participant(participant)?))
     }
 
-    /// The table of trials for `nima study trials`.
+    /// Returns the table of trials for `nima study trials`.
     pub fn trials(&self) -> Table {
         let withheld = |sealed: &str| serde_json::from_slice(&self.key.open(MEASURES, sealed).ok()?).ok();
         table::trials(&self.plan, &self.state, self.opened(), withheld)
     }
 
-    /// The scores of the questionnaires after each condition.
+    /// Returns the scores of the questionnaires after each condition.
     pub fn questionnaires(&self) -> Table {
         table::questionnaires(&self.plan, &self.state, self.opened())
     }
 
-    /// What is left out of the analysis, and why.
+    /// Returns the exclusions from the analysis, with their reasons.
     pub fn exclusions(&self) -> Vec<Exclusion> {
         exclusions(&self.plan, &self.state)
     }
 
-    /// Proficiency and learning curve of everybody who has begun.
+    /// Returns proficiency and learning curve of every participant who has begun.
     pub fn learning(&self) -> Vec<Learning> {
         learning(&self.state)
     }

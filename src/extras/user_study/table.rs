@@ -1,23 +1,24 @@
-//! Tables for the analysis, as CSV: a row per trial, and a row per participant and condition for the questionnaires.
+//! Tables for the analysis, as CSV: one row per trial, and for the questionnaires one row per participant and
+//! condition.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::{Exclusion, Label, Measures, Opened, Plan, State, exclusion::exclusions, file::measure_keys};
 
-/// A table, and what it leaves out.
+/// A table, with its exclusions.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// The text of the file.
     pub csv: String,
-    /// Its rows, without the line of names.
+    /// Number of rows, without the header.
     pub rows: usize,
-    /// What was left out, by rules and by people.
+    /// Exclusions by rules and by people.
     pub excluded: Vec<Exclusion>,
     /// Trials without a result.
     pub missing: Vec<(String, u32)>,
 }
 
-/// One row: whose, under what, its number, whether it was simulated, and its values.
+/// One row: participant, condition, number, whether it was simulated, and its values.
 struct Row<'a> {
     participant: &'a str,
     condition: String,
@@ -26,13 +27,13 @@ struct Row<'a> {
     values: Measures,
 }
 
-/// The name of a condition, where it may be shown, else its label. Names have no commas and no quotes.
+/// The name of a condition if it may be shown, otherwise its label. Names contain no commas and no quotes.
 fn shown(label: Label, opened: Option<&Opened>) -> String {
     let named = opened.and_then(|opened| opened.condition(label));
     named.map_or_else(|| label.to_string(), |condition| condition.name.clone())
 }
 
-/// The trials that count. `withheld` gives the measures that tell the condition, where they may be shown.
+/// Returns the trials that count. `withheld` returns the measures that reveal the condition, if they may be shown.
 pub(crate) fn trials(
     plan: &Plan,
     state: &State,
@@ -64,7 +65,7 @@ pub(crate) fn trials(
     Table { csv: csv(&rows, &measure_keys().collect::<Vec<_>>()), rows: rows.len(), excluded, missing }
 }
 
-/// The scores of the questionnaires after each condition.
+/// Returns the scores of the questionnaires after each condition.
 pub(crate) fn questionnaires(plan: &Plan, state: &State, opened: Option<&Opened>) -> Table {
     let excluded: Vec<Exclusion> = exclusions(plan, state).into_iter().filter(|one| one.trial.is_none()).collect();
     let mut rows = Vec::new();

@@ -1,9 +1,9 @@
-//! Measures that tell the condition to whoever reads them.
+//! Measures that reveal the condition.
 
-/// What the hand felt: without force it is zero. Until the unblinding these are kept encrypted.
+/// Forces in the hand: zero for a condition without force. They are kept encrypted until the unblinding.
 const TELLING: [&str; 2] = ["peak_rendered_n", "rms_rendered_n"];
 
-/// Whether this measure, by its key, tells the condition.
+/// Whether the measure with this key reveals the condition.
 pub(crate) fn tells(key: &str) -> bool {
     TELLING.iter().any(|id| key.starts_with(id))
 }

@@ -1,4 +1,4 @@
-//! The desk leads a simulated rig with an emulated cap and an emulated pedal.
+//! Leads a simulated rig from a desk with an emulated cap and an emulated pedal.
 
 use std::{
     sync::{
@@ -30,7 +30,7 @@ fn source(endpoint: &str) -> String {
     if endpoint.starts_with("emulated:") { endpoint.to_owned() } else { format!("emulated:{endpoint}") }
 }
 
-/// The rig `desk` in a scene, with a cap whose buttons a test presses.
+/// The rig `desk` in a scene, with a cap whose buttons are pressed by a test.
 struct Pressed {
     desk: Desk,
     watched: Watched,
@@ -59,7 +59,7 @@ impl Pressed {
         this
     }
 
-    /// Runs the loop, as an engaged one does, until it is as wanted; for 6 s at most.
+    /// Runs the loop as if engaged until `wanted`, for at most 6 s.
     fn run(&mut self, wanted: impl Fn(&Self) -> bool) -> bool {
         let until = Instant::now() + Duration::from_secs(6);
         while Instant::now() < until {
@@ -88,7 +88,6 @@ impl Pressed {
         self.for_s(0.2);
     }
 
-    /// Where a hand is, m.
     fn hand_m(&self, side: Side) -> Vector3<f64> {
         self.inputs[side.index()].map_or_else(Vector3::zeros, |inputs| inputs.hand.position_m)
     }
@@ -111,7 +110,7 @@ fn the_second_button_of_a_cap_marks_where_lumps_are_looked_for() {
         }
         assert_eq!(marks(&pressed), 2, "each press once, however long it is");
         pressed.press(0);
-        assert_eq!(marks(&pressed), 0, "the first one lets the hand go on");
+        assert_eq!(marks(&pressed), 0, "the first button lets the hand resume its task");
     });
 }
 

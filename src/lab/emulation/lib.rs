@@ -1,7 +1,9 @@
-//! Emulation: an emulator for every device on its real interface, and all devices of a rig file around simulated worlds.
+//! Emulation: an emulator for every device on its real interface, and all devices of a rig file around simulated
+//! worlds.
 //!
-//! [`emulators`] are fed by a closure, a test or a world with what a device would measure. [`emulated`] connects one for every device of a
-//! rig file to the worlds of `nima_simulation`. The loop reaches them through its drivers alone; nothing of the product names this crate.
+//! [`emulators`] get the values to be measured from a closure, a test or a world. [`emulated`] connects one for every
+//! device of a rig file to the worlds of `nima_simulation`. The loop reaches them only through its drivers; no product
+//! code depends on this crate.
 
 #[cfg(test)]
 #[cfg(target_os = "linux")]

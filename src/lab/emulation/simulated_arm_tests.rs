@@ -1,5 +1,4 @@
-//! A rig with the second make of arm: handle and sensor are emulated on real connections, the arm's joints are
-//! simulated.
+//! A rig with the second arm model: handle and sensor are emulated on real connections, the arm's joints are simulated.
 
 use std::time::{Duration, Instant};
 
@@ -49,7 +48,7 @@ fn devices(folder: &std::path::Path) -> (Settings, [Serving; 2]) {
     (Settings { right: Some(right), ..Settings::default() }, serving)
 }
 
-/// Runs ticks until `good`, for at most 20 s; returns whether that happened.
+/// Runs ticks until `good`, for at most 20 s; returns whether it was reached.
 fn until(
     rig: &mut DeviceRig,
     begin: Instant,
@@ -108,7 +107,7 @@ fn a_rig_leads_an_arm_of_another_make_that_its_file_names() {
         assert!(until(&mut rig, begin, |_| Outputs::SAFE, |inputs| !inputs.powered), "drives stay on");
         let still = |inputs: &Inputs| (inputs.tip_m - tip_m).norm() < 1e-3;
         assert!(until(&mut rig, begin, |_| Outputs::SAFE, still), "does not rest");
-        // Its lever is among those that the supervisor pulls, and its health is reported at its index.
+        // The supervisor has the arm's emergency release, and the arm's health is reported at its index.
         assert_eq!(rig.levers().len(), 2);
         let arm = rig.health().devices[1];
         assert!(arm.standing == Standing::Connected && arm.refused == 0, "{arm:?}");

@@ -1,8 +1,8 @@
-//! What each effect of a scene costs, and what leaving it out changes in the force.
+//! Cost of each effect of a scene, and the change of force without it.
 //!
-//! The motion is the same with and without an effect: the commands of the simulated hand in the whole scene, in free running (no loop is
-//! closed; so the handle, which only the hand feels, is not among the effects). The cost is that of the simulated world alone, per tick;
-//! the force is that which the rig would measure.
+//! The motion is the same with and without an effect: the commands of the simulated hand in the whole scene, in free
+//! running (no closed loop; therefore the handle, which only the hand feels, is not among the effects). The cost is the
+//! simulated world's alone, per tick; the force is the one that the rig would measure.
 
 use std::{fmt::Write as _, hint::black_box, time::Instant};
 
@@ -17,50 +17,45 @@ use serde::Serialize;
 use crate::{Experiment, Findings};
 
 const RATE_HZ: f64 = 1000.0;
-/// Runs of which the median cost is taken.
+/// Number of runs for the median cost.
 const RUNS: usize = 5;
 
-/// The experiment.
 #[derive(Clone, Debug)]
 pub struct Effects {
-    /// Scenes, by name or file; empty for all that are built in.
+    /// Scenes by name or file; empty for all built-in scenes.
     pub scenes: Vec<String>,
-    /// Length of the motion, s.
+    /// Duration of the motion, s.
     pub seconds: f64,
 }
 
-/// One scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct OfScene {
-    /// Its name or file.
     pub scene: String,
-    /// Cost of a tick of one arm with everything, us.
+    /// Cost of a tick of one arm with all effects, us.
     pub cost_us: f64,
     /// Mean magnitude of the measured force, N.
     pub force_n: f64,
-    /// What can be left out.
+    /// The removable effects.
     pub effects: Vec<Effect>,
 }
 
 /// One effect of a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct Effect {
-    /// What was left out.
+    /// Name of the removed effect.
     pub effect: &'static str,
-    /// What it costs in a tick, us; around zero within the noise of the clock.
+    /// Its cost in a tick, us; near zero within the noise of the clock.
     pub cost_us: f64,
     /// Root mean square of the change of the measured force without it, N.
     pub change_n: f64,
-    /// The largest change, N.
+    /// Maximum change, N.
     pub change_max_n: f64,
 }
 
-/// The result.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Length of the motion, s.
+    /// Duration of the motion, s.
     pub seconds: f64,
-    /// Every scene.
     pub scenes: Vec<OfScene>,
 }
 
@@ -124,10 +119,10 @@ fn force_n(sensed: &Sensed) -> Vector3<f64> {
     }
 }
 
-/// The simulation of one hand: its answer to what it is told at a time.
+/// The simulation of one hand: returns the measurements for the outputs at a time.
 type Simulated = Box<dyn FnMut(f64, &Outputs) -> Option<Inputs>>;
 
-/// Of this scene; with what is played with in it, which all instruments share, where there is anything.
+/// Simulates this scene, with the objects that all instruments share, if there are any.
 fn simulated(scene: &Scene) -> Simulated {
     if !scene.is_played() {
         let mut world = World::new(scene, RATE_HZ);
@@ -143,7 +138,7 @@ fn simulated(scene: &Scene) -> Simulated {
     })
 }
 
-/// The commands of the hand of this scene, tick by tick.
+/// Returns the commands of this scene's hand, tick by tick.
 fn commands(scene: &Scene, ticks: usize) -> Vec<Vector3<f64>> {
     let mut world = simulated(scene);
     let mut outputs = Outputs::SAFE;
@@ -156,7 +151,7 @@ fn commands(scene: &Scene, ticks: usize) -> Vec<Vector3<f64>> {
     commands
 }
 
-/// The measured forces of this scene along these commands.
+/// Returns the measured forces of this scene along these commands.
 fn forces(scene: &Scene, commands: &[Vector3<f64>], mut each: impl FnMut(Vector3<f64>)) {
     let mut world = simulated(scene);
     for (tick, command_m) in commands.iter().enumerate() {
@@ -167,7 +162,7 @@ fn forces(scene: &Scene, commands: &[Vector3<f64>], mut each: impl FnMut(Vector3
     }
 }
 
-/// Median cost of a tick, us, of scenes that are run in turn, so that all see the same machine.
+/// Returns the median cost of a tick, us, of scenes that are run in turn, so that all meet the same load.
 fn costs_us(scenes: &[Scene], commands: &[Vector3<f64>]) -> Vec<f64> {
     let mut costs = vec![Vec::with_capacity(RUNS); scenes.len()];
     for _ in 0..RUNS {
@@ -249,7 +244,7 @@ impl Findings for Report {
         for OfScene { scene, cost_us, force_n, effects } in &self.scenes {
             writeln!(text, "| {scene} | nothing; mean force {force_n:.2} N | {cost_us:.2} | - | - |").ok();
             for Effect { effect, cost_us, change_n, change_max_n } in effects {
-                // No minus before a zero.
+                // Avoids a negative zero.
                 let cost_us = (cost_us * 100.0).round() / 100.0 + 0.0;
                 writeln!(text, "| | {effect} | {cost_us:.2} | {change_n:.3} | {change_max_n:.2} |").ok();
             }

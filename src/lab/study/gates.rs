@@ -2,7 +2,7 @@
 //! checked.
 //!
 //! Takes a number of requests and a seed; returns the number of [`Breaches`] (must be 0) and how often each gate acted,
-//! which shows that the requests reach every gate. After every 2000 requests a new chain is made with other settings
+//! which shows that the requests reach every gate. After every 2000 requests a chain is built with other settings
 //! (valid and invalid ones), one or three axes and another rate; in between, gain, dead band and permission are changed
 //! at random.
 
@@ -25,7 +25,6 @@ use crate::{Experiment, Findings};
 /// Requests to one chain.
 const PER_CHAIN: u64 = 2000;
 
-/// Options of this study.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Number of requests.
@@ -34,21 +33,17 @@ pub struct Options {
     pub seed: u64,
 }
 
-/// How often a gate acted.
+/// Activity of a gate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Acted {
-    /// Which gate.
     pub gate: Gate,
     /// Number of requests that it changed.
     pub requests: u64,
 }
 
-/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Number of requests.
     pub requests: u64,
-    /// Number of chains.
     pub chains: u64,
     /// Seed of the random requests.
     pub seed: u64,
@@ -199,7 +194,7 @@ mod tests {
     fn half_a_million_adversarial_requests_breach_nothing_and_find_every_gate() {
         let report = study(500_000, 3, |_, _, _| {});
         assert_eq!(report.breaches, Breaches::default());
-        // Otherwise a chain that never gives a force would pass.
+        // Otherwise a chain that never outputs a force would pass.
         assert!(report.forces > 50_000, "{}", report.forces);
         for acted in &report.acted {
             assert!(acted.requests > 100, "{acted:?}");

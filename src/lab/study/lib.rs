@@ -1,4 +1,4 @@
-//! Experiments that measure the system and report figures.
+//! Experiments that measure the system and report results.
 //!
 //! Each is an [`Experiment`], a struct of its options; its result implements [`Findings`]. One writer in the console
 //! turns findings into files and into text on a terminal.
@@ -26,16 +26,14 @@ use std::{error::Error, path::PathBuf};
 
 use serde::Serialize;
 
-/// A measurement with its options.
 pub trait Experiment {
-    /// Start of the names of its files: `release` gives `release.json` and `release.md`.
+    /// Prefix of the names of its files: `release` gives `release.json` and `release.md`.
     const NAME: &'static str;
-    /// Endings of the files that it always writes besides the JSON. Before the experiment runs, the writer checks that these
-    /// files can be written.
+    /// Endings of the files that it always writes in addition to the JSON. Before the experiment runs, the writer
+    /// checks that these files can be written.
     const FILES: &'static [&'static str] = &[".md"];
-    /// Type of the result.
     type Findings: Findings;
-    /// Why it could not be run.
+    /// Why it could not run.
     type Error: Error + Send + Sync + 'static;
 
     /// Files that it reads; results must not overwrite them.
@@ -47,16 +45,17 @@ pub trait Experiment {
     /// name of the next step.
     ///
     /// # Errors
-    /// An option is out of range, or something that is needed for the measurement is missing.
+    /// An option is out of range, or something needed for the measurement is missing.
     fn run(&self, progress: &mut dyn FnMut(usize, usize, &str)) -> Result<Self::Findings, Self::Error>;
 }
 
 /// The result of an [`Experiment`], serialised as its JSON.
 pub trait Findings: Serialize {
-    /// Text for a terminal; in Markdown where it is a file, too.
+    /// Text for a terminal; in Markdown if it is also written to a file.
     fn text(&self) -> String;
 
-    /// The files besides the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents. By default the text.
+    /// The files in addition to the JSON: the ending of each name (`.md`, `-errors.svg`), and its contents. By default
+    /// the text.
     fn files(&self) -> Vec<(String, String)> {
         vec![(".md".to_owned(), self.text())]
     }

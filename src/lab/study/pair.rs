@@ -3,9 +3,10 @@
 //!
 //! The parts of the loop are the real ones (identifier, link, tracking, renderer, gates); hand, handle and follower are
 //! models. SI units, workspace frame (z up, tissue at rest at z = 0), 1 kHz. Deterministic for a seed. Unlike in the
-//! simulated world of the scenes, the hand can open here and leave the handle free. Ticks come when the clock of the trial
-//! says; meanwhile hand, handle and follower move for the true time, with the last force and command held. As in the loop, identification,
-//! rendering and lag get even spacing: each deadline that has passed gets the value between two ticks.
+//! simulated world of the scenes, the hand can open here and release the handle. Ticks arrive at the times of the
+//! trial's clock; meanwhile hand, handle and follower move for the true time, with the last force and command held. As
+//! in the loop, identification, rendering and lag get evenly spaced values: each deadline that has passed gets the
+//! value interpolated between two ticks.
 
 use std::f64::consts::TAU;
 
@@ -29,9 +30,9 @@ use nima_simulation::{Tissue, scene::Tissue as TissueConfig};
 pub(super) const RATE_HZ: f64 = 1000.0;
 /// Integration steps of the equation of motion per period.
 const SUBSTEPS: u32 = 4;
-/// An interval that is longer than a period by less than this part of it is one period: times are rounded.
+/// An interval that exceeds a period by less than this fraction counts as one period, because times are rounded.
 const ROUNDING_PERIODS: f64 = 1e-6;
-/// Speed at which Coulomb friction is nearly whole, m/s.
+/// Speed at which Coulomb friction reaches nearly its full value, m/s.
 const RUBS_M_S: f64 = 0.002;
 /// As in the scenes: noise of the force sensor (N), resolution of the handle's position (m), natural frequency (Hz) and
 /// maximum speed (m/s) of the follower.
@@ -45,13 +46,13 @@ const FOLLOWER_M_S: f64 = 0.3;
 pub(super) struct Handle {
     /// Apparent mass at the grip, kg.
     pub(super) kg: f64,
-    /// What its bearings and cables brake, N s/m, and their Coulomb friction, N.
+    /// Damping of its bearings and cables, N s/m, and their Coulomb friction, N.
     pub(super) n_s_m: f64,
     pub(super) coulomb_n: f64,
 }
 
 impl Handle {
-    /// Roughly an omega.7's.
+    /// Approximately an omega.7's.
     pub(super) const OMEGA: Self = Self { kg: 0.25, n_s_m: 0.5, coulomb_n: 0.0 };
 }
 
@@ -74,12 +75,11 @@ impl Grip {
     }
 }
 
-/// Parameters of a trial.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trial {
     pub(super) mode: Mode,
     pub(super) own_motion: OwnMotion,
-    /// How literal and linear read the paper.
+    /// Interpretation of the paper for the modes literal and linear.
     pub(super) literal: Recipe,
     pub(super) delay_s: f64,
     pub(super) gates: ChainSettings,
@@ -92,11 +92,10 @@ pub(super) struct Trial {
     pub(super) handle: Handle,
     pub(super) grip: Grip,
     pub(super) seed: u64,
-    /// When the loop's ticks come.
+    /// Times of the loop's ticks.
     pub(super) clock: VirtualClock,
 }
 
-/// The state of the bench.
 #[derive(Debug)]
 pub(super) struct Pair {
     trial: Trial,
@@ -116,10 +115,10 @@ pub(super) struct Pair {
     link: ProgrammedLink,
     tracking: Tracking,
     renderer: Renderer,
-    /// Tip (m) and its force (N), command, handle and tip (m): of the last tick, for even spacing.
+    /// Tip (m) and its force (N), command, handle and tip (m) of the last tick, for interpolation.
     measured: Between<6>,
     led: Between<9>,
-    /// What was rendered at the newest deadline, N.
+    /// The rendered force at the newest deadline, N.
     asked_n: Option<Vector3<f64>>,
     chain: Chain,
     speed: Speed<3>,
@@ -208,13 +207,13 @@ impl Pair {
         self.gripped = false;
     }
 
-    /// Puts another tissue in place of the one so far; the tip must be outside of both.
+    /// Replaces the tissue; the tip must be outside both.
     pub(super) fn exchange_tissue(&mut self, tissue: TissueConfig) {
         self.tissue = Tissue::new(tissue);
     }
 
-    /// One tick. `intended_m` returns the hand's intended position (m) at a time (s); it is called with rising times up to
-    /// that of the tick, at most a period apart, and with how long after the one before each is (s).
+    /// Runs one tick. `intended_m` returns the hand's intended position (m) at a time (s). It is called with rising
+    /// times up to the time of the tick, at most a period apart, and with the time since the previous call (s).
     pub(super) fn step(&mut self, mut intended_m: impl FnMut(f64, f64) -> Vector3<f64>) {
         let timing = Timing::from(self.times.advance());
         let now_s = timing.now_s;

@@ -1,7 +1,9 @@
-//! Does the loop give the hand more energy than it takes? Net power into the hand in three tasks, and whether a loose grip oscillates.
+//! Does the loop give the hand more energy than it takes? Net power into the hand in four tasks, and whether a loose
+//! grip oscillates.
 //!
-//! Takes the clocks of the loop; gives a [`Report`]: one [`Row`] for every clock, mode, motion from which the leader makes the force, task and delay. All gates
-//! are as they come, but for the energy gate and the governor, which are off: what is shown is the rendering alone.
+//! Takes the clocks of the loop; returns a [`Report`]: one [`Row`] for every clock, mode, motion from which the leader
+//! computes the force, task and delay. All gates have their defaults, except that the energy gate and the governor are
+//! off, so that the result shows only the rendering.
 
 mod present;
 
@@ -21,24 +23,23 @@ use super::{
     release::{ReleaseError, TREMOR_M, pressed_tissue},
 };
 
-/// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 5] = [0.0, 10.0, 50.0, 100.0, 300.0];
 /// Stiffnesses of loose grips, N/m, with a damping of 5 N s/m.
 pub const LOOSE_N_M: [f64; 3] = [150.0, 300.0, 600.0];
-/// A held handle that moves faster than this oscillates, m/s.
+/// A held handle that moves faster than this counts as oscillating, m/s.
 pub const STILL_M_S: f64 = 0.01;
-/// Duration of a task, and the time before it is judged, s.
+/// Duration of a task, and time before it is judged, s.
 const TASK_S: f64 = 12.0;
 const FROM_S: f64 = 1.5;
-/// Duration of a hold with a loose grip, and its last part that is judged, s.
+/// Duration of a hold with a loose grip, and of its judged last part, s.
 const HOLD_S: f64 = 6.0;
 const JUDGED_S: f64 = 1.0;
 const LOOSE_N_S_M: f64 = 5.0;
-/// Height above the tissue and depth in it that the hand intends, m.
+/// Intended height above the tissue and depth in it, m.
 const ABOVE_M: f64 = 0.004;
 const DEPTH_M: f64 = 0.012;
 
-/// What the hand does.
+/// Activity of the hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Task {
@@ -53,10 +54,9 @@ pub enum Task {
 }
 
 impl Task {
-    /// All tasks.
     pub const ALL: [Self; 4] = [Self::PalpationSlow, Self::PalpationFast, Self::PegTransfer, Self::Withdrawal];
 
-    /// Time from one touch to the next, s; the tip is outside of the tissue at its beginning.
+    /// Time between two touches, s; the tip is outside the tissue at the beginning.
     const fn period_s(self) -> f64 {
         match self {
             Self::PalpationSlow => 1.0,
@@ -66,7 +66,7 @@ impl Task {
         }
     }
 
-    /// Where the hand wants to be (m) at this time (s).
+    /// Intended position of the hand (m) at this time (s).
     fn intended_m(self, t_s: f64) -> Vector3<f64> {
         let span_m = ABOVE_M + DEPTH_M;
         let way = |t_s: f64, from_s: f64, for_s: f64| smooth((t_s - from_s) / for_s);
@@ -90,7 +90,7 @@ impl Task {
     }
 }
 
-/// From 0 to 1 without a jump of speed or acceleration.
+/// From 0 to 1 with continuous speed and acceleration.
 fn smooth(s: f64) -> f64 {
     let s = s.clamp(0.0, 1.0);
     s * s * s * (10.0 + s * (-15.0 + 6.0 * s))
@@ -100,59 +100,54 @@ fn linear(s: f64) -> f64 {
     s.clamp(0.0, 1.0)
 }
 
-/// One task in one mode.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Row {
-    /// Clock of the loop.
     pub clock: ClockProfile,
-    /// Mode that rendered.
+    /// Rendering mode.
     pub mode: Mode,
-    /// Motion from which the leader made the force.
+    /// Motion from which the leader computed the force.
     pub own_motion: OwnMotion,
-    /// What the hand did.
+    /// Task of the hand.
     pub task: Task,
     /// Delay of the link, ms.
     pub delay_ms: f64,
     /// Mean power into the hand, mW: positive where the loop drives the hand.
     pub power_mw: f64,
-    /// Mean error of the force against the tissue's on the tip, N.
+    /// Mean error of the force, compared with the tissue's force on the tip, N.
     pub error_n: f64,
 }
 
 /// A loose grip that holds still, 12 mm deep.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Held {
-    /// Clock of the loop.
     pub clock: ClockProfile,
-    /// Mode that rendered.
+    /// Rendering mode.
     pub mode: Mode,
-    /// Motion from which the leader made the force.
+    /// Motion from which the leader computed the force.
     pub own_motion: OwnMotion,
     /// Stiffness of the grip, N/m.
     pub grip_n_m: f64,
     /// Delay of the link, ms.
     pub delay_ms: f64,
-    /// Fastest motion in the last second, m/s.
+    /// Maximum speed in the last second, m/s.
     pub peak_m_s: f64,
 }
 
-/// What to do.
+/// Options of the study.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Clocks of the loop, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
 }
 
-/// The study's result.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Every task.
     pub rows: Vec<Row>,
-    /// Every loose grip.
     pub held: Vec<Held>,
 }
 
-/// The modes of the study with the motions that make sense for them: a force that is reflected does not depend on the leader's.
+/// The modes of the study with the motions that make sense for them: a reflected force does not depend on the leader's
+/// motion.
 pub const WAYS: [(Mode, OwnMotion); 7] = [
     (Mode::Dfr, OwnMotion::Follower),
     (Mode::Anchored, OwnMotion::Follower),
@@ -213,8 +208,6 @@ fn trial(
     }
 }
 
-/// One task.
-///
 /// # Errors
 /// [`SettingsError`] if the loop's settings are invalid.
 pub fn tasked(
@@ -227,7 +220,7 @@ pub fn tasked(
     tasked_over(clock, way, task, delay_ms, |_| tissue)
 }
 
-/// One task over a tissue that may be another one at every touch.
+/// One task over a tissue that may change at every touch.
 ///
 /// # Errors
 /// [`SettingsError`] if the loop's settings are invalid.
@@ -253,7 +246,7 @@ pub fn tasked_over(
         }
         let force_n = pair.force_n();
         let at_m = pair.handle_m();
-        // The hand is a period behind, as it is where ticks are counted.
+        // The hand is a period behind, as in simulations that count ticks.
         pair.step(|t_s, _| task.intended_m(t_s - 1.0 / RATE_HZ));
         if t_s >= FROM_S - 0.5 / RATE_HZ {
             let passed_s = pair.now_s() - t_s;
@@ -274,8 +267,6 @@ pub fn tasked_over(
     })
 }
 
-/// One loose grip.
-///
 /// # Errors
 /// [`SettingsError`] if the loop's settings are invalid.
 pub fn hold(

@@ -1,19 +1,20 @@
-//! Least squares in arbitrary precision, the exact answer to which the solvers are compared.
+//! Least squares in arbitrary precision: the exact answer with which the solvers are compared.
 //!
-//! Takes exact copies of the f64 rows that a solver was given; returns the force (N) of the exact minimiser, of least
+//! Takes exact copies of the f64 rows that a solver was given; returns the force (N) of the exact minimiser, of minimum
 //! norm if the rows do not determine it, rounded to f64 once at the end.
 
 use dashu_float::{Context, FBig, Repr, ops::Abs as _, round::mode::HalfEven};
 
 type Big = FBig<HalfEven, 2>;
 
-/// Significant bits of every step. A product of two f64 has 106; sums of them over columns between 1e-40 and 1e40 are exact.
+/// Significant bits of every step. A product of two f64 has 106; sums of such products over columns between 1e-40 and
+/// 1e40 are exact.
 pub const PRECISION_BITS: usize = 768;
 /// A pivot below `2^-DEPENDENT_BITS` of its column means an exact dependence; rounded data leave at least about
 /// `2^-110`.
 const DEPENDENT_BITS: isize = 400;
 
-/// The normal equations of a window, factorised as `L D L'`. They square the condition number, which does no harm at
+/// The normal equations of a window, factorised as `L D L'`. They square the condition number, which is harmless at
 /// this precision.
 pub struct Reference {
     lower: Vec<Vec<Big>>,
@@ -23,8 +24,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// From rows of `unknowns` columns with the force as a further column. `ridge_root` is the square root of the ridge
-    /// on every unknown but the first (0: none). `None` if an entry is not finite.
+    /// Takes rows of `unknowns` columns with the force as an additional column. `ridge_root` is the square root of the
+    /// ridge on every unknown but the first (0: none). `None` if an entry is not finite.
     pub fn new(rows: &[Vec<f64>], unknowns: usize, ridge_root: f64) -> Option<Self> {
         let mut gram = vec![vec![zero(); unknowns + 1]; unknowns + 1];
         for row in rows {
@@ -66,12 +67,12 @@ impl Reference {
         Self { lower, pivots, right }
     }
 
-    /// Number of the first `prefix` columns that depend linearly on those before them.
+    /// Returns how many of the first `prefix` columns depend linearly on earlier ones.
     pub fn rank(&self, prefix: usize) -> usize {
         self.pivots.iter().take(prefix).flatten().count()
     }
 
-    /// The exact solution with the first `prefix` columns, of least norm if there are several.
+    /// Returns the exact solution with the first `prefix` columns, of minimum norm if there are several.
     fn solution(&self, prefix: usize) -> Vec<Big> {
         let independent: Vec<usize> = (0..prefix).filter(|&k| self.pivots[k].is_some()).collect();
         // The rows of R = L' with a nonzero pivot: R m = right. With W = R R' : m = R' W^-1 right.
@@ -102,8 +103,8 @@ impl Reference {
         (0..prefix).map(|j| (0..n).fold(zero(), |sum, i| sum + &r[i][j] * &weights[i])).collect()
     }
 
-    /// Force (N) at each of `at` (rows of columns), using the first `prefix` columns; `None` for a row that is not
-    /// finite.
+    /// Returns the force (N) at each of `at` (rows of columns), using the first `prefix` columns; `None` for a row that
+    /// is not finite.
     pub fn predict(&self, prefix: usize, at: &[Vec<f64>]) -> Vec<Option<f64>> {
         let m = self.solution(prefix);
         let force = |row: &Vec<f64>| {
@@ -156,7 +157,7 @@ mod tests {
             let rows = rows(40, duplicate);
             let reference = Reference::new(&rows, 4, 0.0).unwrap();
             assert_eq!(reference.rank(4), if duplicate { 3 } else { 4 });
-            // Also outside the span of the rows: the solution of least norm is unique.
+            // Also outside the span of the rows: the solution of minimum norm is unique.
             let at = vec![vec![1.0, 0.3, -0.4, 0.7], vec![0.0, 1.0, 0.0, 0.0]];
             for prefix in 1..=4 {
                 let x = DMatrix::from_fn(40, prefix, |i, j| rows[i][j]);

@@ -1,8 +1,10 @@
-//! Letting go: a hand presses the tissue with up to 5 N, opens, and the handle is alone with the force that the link still delivers.
+//! Release: a hand presses the tissue with up to 5 N and opens, and the handle is alone with the force that the link
+//! still delivers.
 //!
-//! Takes the clocks of the loop; gives a [`Report`]: one [`Row`] for every clock, mode and baseline, delay, force and situation (held for two seconds, and let
-//! go while still pressing), with and without the governor, all other gates as they come; and with the governor the worst over handles
-//! that are not the one that it assumes, and over the viscosity of its brake.
+//! Takes the clocks of the loop; returns a [`Report`]: one [`Row`] for every clock, mode and baseline, delay, force and
+//! situation (after holding for two seconds, and while still pressing), with and without the governor, with all other
+//! gates at their defaults; and, with the governor, the worst case over handles that differ from the assumed one, and
+//! over the viscosity of its brake.
 
 mod grid;
 mod present;
@@ -21,30 +23,28 @@ use serde::Serialize;
 
 use super::pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial};
 
-/// Delays of the link, ms.
 pub const DELAYS_MS: [f64; 6] = [0.0, 10.0, 50.0, 100.0, 200.0, 300.0];
-/// Forces of the contact that is let go, N: the strongest, and weak ones.
+/// Forces of the contact at the release, N: the strongest, and weak ones.
 pub const CONTACTS_N: [f64; 4] = [5.0, 2.0, 1.0, 0.5];
-/// Up to this a release counts as weak, N.
+/// Up to this contact force a release counts as weak, N.
 pub const WEAK_N: f64 = 2.0;
-/// The aims: travel (mm; of weak releases), speed (m/s), energy (mJ), and force 100 ms later (N).
+/// Targets: travel (mm; of weak releases), speed (m/s), energy (mJ), and force 100 ms later (N).
 pub const AIM_MM: f64 = 2.0;
-/// Of weak ones.
+/// Travel of weak releases, mm.
 pub const WEAK_AIM_MM: f64 = 25.0;
-/// Speed, m/s.
 pub const AIM_M_S: f64 = 0.12;
-/// Energy, mJ.
 pub const AIM_MJ: f64 = 2.0;
-/// Force later than 100 ms, N: what the brake makes of the steps of the reading at rest, near the handle's own friction.
+/// Force later than 100 ms, N: the brake's response to the quantisation of the reading at rest, near the handle's own
+/// friction.
 pub const AIM_N: f64 = 0.2;
-/// Brakes that are tried, N s/m. None is known of a real device; 30 is the most that chai3d asks of an omega.7.
+/// Tested brakes, N s/m. The brake of a real device is unknown; 30 is the maximum that chai3d commands on an omega.7.
 pub const BRAKES_N_S_M: [f64; 3] = [5.0, 15.0, 30.0];
-/// Handles that are tried, by mass (kg) and Coulomb friction (N).
+/// Tested handles, by mass (kg) and Coulomb friction (N).
 const HANDLES: [(f64, f64); 6] = [(0.20, 0.0), (0.20, 0.15), (0.25, 0.0), (0.25, 0.15), (0.31, 0.0), (0.31, 0.15)];
-/// Time looked at after the hand has opened, and when there should be no force any more, s.
+/// Observation time after the hand has opened, and time after which there should be no force, s.
 const AFTER_S: f64 = 1.0;
 const LATE_S: f64 = 0.1;
-/// Speed of pressing (m/s), height at the start (m), time of holding and its last part (s), patience (s).
+/// Speed of pressing (m/s), height at the start (m), time of holding and its last part (s), timeout (s).
 const PRESS_M_S: f64 = 0.020;
 const START_M: f64 = 0.005;
 const HOLD_S: f64 = 2.0;
@@ -53,86 +53,78 @@ const PATIENCE_S: f64 = 20.0;
 pub(super) const TREMOR_M: f64 = 8e-5;
 /// Number of modes: the program's own, and the baselines.
 const METHODS: usize = Mode::ALL.len() + Mode::BASELINES.len();
-/// Modes that have a steady force in the hand, of those that the worst cases are made of.
+/// Modes with a steady force in the hand, for which the worst cases are computed.
 const STEADY: [Mode; 2] = [Mode::Dfr, Mode::Anchored];
 
-/// Why the study could not be made.
+/// Why the study could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum ReleaseError {
-    /// The scene whose tissue is pressed cannot be had.
+    /// The scene with the tissue cannot be loaded.
     #[error(transparent)]
     Scene(#[from] ConfigError),
-    /// Settings out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// The scene has no tissue.
-    #[error("the scene peg_transfer has no [tissue]: there is nothing to press")]
+    #[error("the scene peg_transfer has no [tissue]: there is nothing to press; add it")]
     NoTissue,
-    /// The force was never reached.
     #[error("{mode} at {delay_ms} ms: the hand did not reach {contact_n} N within {PATIENCE_S} s")]
     NoContact {
-        /// Mode that rendered.
         mode: Mode,
-        /// Delay, ms.
         delay_ms: f64,
-        /// Force that was to be reached, N.
+        /// Force to be reached, N.
         contact_n: f64,
     },
 }
 
-/// When the hand opens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Situation {
     /// After two seconds at about the contact force, with the hand's tremor.
     Held,
-    /// The moment the contact force is reached, at 20 mm/s.
+    /// At the moment when the contact force is reached, at 20 mm/s.
     Pressing,
 }
 
 impl Situation {
-    /// Both.
     pub const ALL: [Self; 2] = [Self::Held, Self::Pressing];
 }
 
-/// One letting go.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Row {
-    /// Clock of the loop.
     pub clock: ClockProfile,
-    /// Mode that rendered.
+    /// Rendering mode.
     pub mode: Mode,
     /// Delay of the link, ms.
     pub delay_ms: f64,
-    /// The governor was on.
+    /// Whether the governor was on.
     pub governor: bool,
     /// When the hand opened.
     pub situation: Situation,
-    /// Force of the tissue when it did, N.
+    /// Force of the tissue at that time, N.
     pub contact_n: f64,
-    /// Force on the handle when it did, N.
+    /// Force on the handle at that time, N.
     pub before_n: f64,
-    /// Fastest motion of a handle that was held, in the last 0.3 s, m/s; 0 where it was pressing.
+    /// Maximum speed of a held handle in the last 0.3 s, m/s; 0 while it was pressing.
     pub shake_m_s: f64,
-    /// The governor withheld force at that moment although the hand was there.
+    /// Whether the governor withheld force at that moment although the hand held the handle.
     pub closed_before: bool,
-    /// Farthest from where the handle was let go, or from where it would have swung to by itself, the lesser of the two, mm.
+    /// Maximum distance from where the handle was released, or from where it would have swung by itself, whichever is
+    /// smaller, mm.
     pub travel_mm: f64,
-    /// Fastest motion, m/s.
+    /// Maximum speed, m/s.
     pub peak_m_s: f64,
-    /// Most energy that the handle had been given, mJ.
+    /// Maximum energy given to the handle, mJ.
     pub energy_mj: f64,
-    /// Largest force on the handle later than 100 ms, N.
+    /// Maximum force on the handle later than 100 ms, N.
     pub force_after_100_ms_n: f64,
 }
 
 impl Row {
-    /// The hand held a force worth the name, as the governor did: there is something to judge.
+    /// Whether the held force was large enough to be judged, by the governor's criterion.
     pub fn counts(&self) -> bool {
         self.before_n > 0.5 * self.contact_n.min(4.0) && !self.closed_before
     }
 
-    /// All aims are met.
     pub fn meets_the_aims(&self) -> bool {
         let weak = self.contact_n <= WEAK_N;
         self.travel_mm <= if weak { WEAK_AIM_MM } else { AIM_MM }
@@ -142,10 +134,9 @@ impl Row {
     }
 }
 
-/// The worst over delays, situations and steady modes with one handle and one brake, the governor on.
+/// Worst case over delays, situations and steady modes with one handle and one brake, the governor on.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Worst {
-    /// Clock of the loop.
     pub clock: ClockProfile,
     /// Force of the contact, N.
     pub contact_n: f64,
@@ -155,24 +146,20 @@ pub struct Worst {
     pub handle_kg: f64,
     /// Its Coulomb friction, N.
     pub coulomb_n: f64,
-    /// Travel, mm.
     pub travel_mm: f64,
-    /// Speed, m/s.
     pub peak_m_s: f64,
-    /// Energy, mJ.
     pub energy_mj: f64,
     /// Force later than 100 ms, N.
     pub force_after_100_ms_n: f64,
 }
 
-/// What to do.
+/// Options of the study.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Clocks of the loop, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
 }
 
-/// The study's result.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Every release of a handle with the mass that the governor assumes.
@@ -181,16 +168,12 @@ pub struct Report {
     pub worst: Vec<Worst>,
 }
 
-/// One way of letting go.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// Clock of the loop.
     pub clock: VirtualClock,
-    /// When.
     pub situation: Situation,
-    /// The governor is on.
     pub governor: bool,
-    /// Mode that renders.
+    /// Rendering mode.
     pub mode: Mode,
     /// Delay, ms.
     pub delay_ms: f64,
@@ -203,7 +186,7 @@ fn methods() -> impl Iterator<Item = Mode> {
     Mode::ALL.into_iter().chain(Mode::BASELINES)
 }
 
-/// The tissue that is pressed in the studies with a hand: that of the peg transfer.
+/// Returns the tissue of the studies with a hand: the one of the peg transfer.
 pub(super) fn pressed_tissue() -> Result<Tissue, ReleaseError> {
     Scene::load("peg_transfer")?.tissue.ok_or(ReleaseError::NoTissue)
 }
@@ -269,7 +252,7 @@ fn tried(way: &Way, gates: ChainSettings, handle: &Handle, tissue: Tissue) -> Re
     release(&trial, situation, contact_n)
 }
 
-/// A hand presses as this trial says, and opens.
+/// A hand presses as set by this trial, and opens.
 pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Result<Row, ReleaseError> {
     let mode = trial.mode;
     let delay_ms = 1e3 * trial.delay_s;
@@ -289,7 +272,7 @@ pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Re
         let end_s = pair.now_s() + HOLD_S - 0.5 / RATE_HZ;
         let judged_s = end_s - SHAKE_S + 1.0 / RATE_HZ;
         while pair.now_s() < end_s {
-            // Whoever holds a force corrects slowly, 2 mm/s for a newton that is missing.
+            // A person who holds a force corrects slowly: 2 mm/s per newton of error.
             let corrects_m_s = 0.002 * (pair.tip_n().z - contact_n).clamp(-1.0, 1.0);
             pair.step(|_, passed_s| {
                 intended_m.z += corrects_m_s * passed_s;
@@ -318,7 +301,7 @@ pub(super) fn release(trial: &Trial, situation: Situation, contact_n: f64) -> Re
     Ok(watch(pair, &intended_m, &trial.handle, start))
 }
 
-/// Opens the hand and looks at the handle.
+/// Opens the hand and observes the handle.
 fn watch(mut pair: Pair, intended_m: &Vector3<f64>, handle: &Handle, mut row: Row) -> Row {
     let from_m = pair.handle_m();
     let swing_m_s = pair.handle_m_s();

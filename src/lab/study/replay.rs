@@ -1,11 +1,11 @@
-//! Replays a recording through the identification, causally and sample by sample, and computes the figures of `nima
+//! Replays a recording through the identification, causally and sample by sample, and computes the results of `nima
 //! identify`.
 //!
-//! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly as a leader
-//! behind a link of delay D would do, and compared with the force measured at t and with the delayed force f(t - D)
-//! (delayed DFR). Units are those of the recording (N and m, or Nm and rad).
+//! For every sample at time t the force is rendered from data up to t - D and the motion at t, exactly like a leader
+//! behind a link of delay D, and compared with the force measured at t and with the delayed force f(t - D) (delayed
+//! DFR). Units are those of the recording (N and m, or Nm and rad).
 //!
-//! Where the leader's own motion was recorded too, the force is made of it, as the loop does with the handle's motion.
+//! If the leader's motion was recorded too, the force is computed from it, as the loop does with the handle's motion.
 
 mod figures;
 mod leader;
@@ -31,33 +31,18 @@ use self::{leader::Leader, tally::Tally};
 pub enum ReplayError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// Shorter than one window and one delay.
     #[error(
         "recording {path} has {found} samples; a window of {window_ms} ms and a delay of {delay_ms} ms at {rate_hz} Hz need {needed}; record longer or shorten the window"
     )]
-    TooShort {
-        path: String,
-        found: usize,
-        needed: usize,
-        window_ms: f64,
-        delay_ms: f64,
-        /// Rate of the recording, Hz.
-        rate_hz: f64,
-    },
-    /// A delay that would be rounded to none.
+    TooShort { path: String, found: usize, needed: usize, window_ms: f64, delay_ms: f64, rate_hz: f64 },
+    /// A delay that would be rounded to zero.
     #[error(
         "the delay of {delay_ms} ms is less than half a sample of recording {path} ({rate_hz} Hz); give 0 or at least {least_ms:.3} ms"
     )]
-    ShortDelay {
-        path: String,
-        delay_ms: f64,
-        /// Rate of the recording, Hz.
-        rate_hz: f64,
-        least_ms: f64,
-    },
+    ShortDelay { path: String, delay_ms: f64, rate_hz: f64, least_ms: f64 },
 }
 
-/// A time step longer than this (s) and this many periods is a hole: nothing is learnt or rendered across it.
+/// A time step longer than this (s) and this many periods is a gap: nothing is learnt or rendered across it.
 const HOLE_S: f64 = 0.05;
 const HOLE_PERIODS: f64 = 10.0;
 
@@ -66,46 +51,43 @@ const HOLE_PERIODS: f64 = 10.0;
 pub struct Row {
     pub t_s: f64,
     pub measured: Vector3<f64>,
-    /// Rendered force, before the gates.
-    /// `None` before the first parcel, and where the mode has no valid force.
+    /// Rendered force, before the gates. `None` before the first packet, and while the mode has no valid force.
     pub rendered: Option<Vector3<f64>>,
-    /// `None` before the first parcel.
+    /// `None` before the first packet.
     pub held: Option<Vector3<f64>>,
     /// Degree used, 0 for none.
     pub degree: usize,
-    /// Condition of the scaled regression.
+    /// Condition number of the scaled regression.
     pub condition: f64,
     /// The first gate that would change this force.
     pub gate: &'static str,
 }
 
-/// How to replay.
+/// Options of a replay.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     pub mode: Mode,
     pub window_s: f64,
     pub delay_s: f64,
     pub max_degree: usize,
-    /// Learn the full matrix `M`, with cross-talk.
+    /// Whether to learn the full matrix `M`, with cross-talk.
     pub cross_talk: bool,
-    /// How literal and linear read the paper.
+    /// Interpretation of the paper for the modes literal and linear.
     pub literal: Recipe,
 }
 
-/// Motion and force over time, wherever they are kept.
+/// Motion and force over time, from any storage.
 #[derive(Clone)]
 pub struct Motion<'a> {
-    /// What messages call it: `recording NAME has ...`.
+    /// Name in messages: `recording NAME has ...`.
     pub name: String,
-    /// Which axes it contains; lane `i` of a sample is axis `axes[i]`.
+    /// The axes; lane `i` of a sample is axis `axes[i]`.
     pub axes: &'a [usize],
-    /// Samples per second, Hz.
     pub rate_hz: f64,
-    /// Number of samples.
     pub samples: usize,
-    /// The sample with this index; times rise, and numbers are finite.
+    /// Returns the sample with this index; times rise, and numbers are finite.
     pub sample: &'a dyn Fn(usize) -> Sample,
-    /// The leader's own motion in the same tick, mapped to the tip, m.
+    /// Returns the leader's motion in the same tick, mapped to the tip, m.
     pub leader_m: Option<&'a dyn Fn(usize) -> Vector3<f64>>,
 }
 
@@ -150,7 +132,7 @@ pub fn replay(recording: &Recording, options: &Options, mut each: impl FnMut(&Ro
     replay_motion(&motion, options, |row, _| each(row))
 }
 
-/// The same for motion that is kept elsewhere; `each` is also given what the follower sends in that tick.
+/// Like [`replay`], for motion in any storage; `each` also gets the data sent by the follower in that tick.
 ///
 /// # Errors
 /// As [`replay`].
@@ -216,7 +198,7 @@ pub fn replay_motion(
     Ok(tally.figures(motion, options.mode, &settings))
 }
 
-/// The settings of the identification, and the delay in samples.
+/// Returns the settings of the identification, and the delay in samples.
 fn settings(motion: &Motion<'_>, options: &Options) -> Result<(Settings, usize), ReplayError> {
     let rate_hz = motion.rate_hz;
     let mut settings = Settings {

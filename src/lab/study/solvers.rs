@@ -2,7 +2,7 @@
 //!
 //! Takes [`Row`]s (motion in m, m/s, m/s²; force in N); returns a [`Fit`] that predicts a force (N) at any row. Nothing
 //! is checked here: for a row that is not finite, or a window that does not determine the unknowns, a degree has no
-//! answer or its number is wrong. Finding such cases is the purpose of the studies.
+//! solution or a wrong one. Finding such cases is the purpose of the studies.
 
 use nalgebra::{DMatrix, DVector, RealField};
 use nima_core::{
@@ -11,21 +11,20 @@ use nima_core::{
 };
 use serde::Serialize;
 
-/// Most entries in a row of the regression matrix: the constant (if the solver has one) and the motion columns.
+/// Maximum number of entries in a row of the regression matrix: the constant (if the solver has one) and the motion
+/// columns.
 pub const MAX_COLUMNS: usize = 1 + MOTION_COLUMNS;
 
 /// One sample of one axis, in SI units (or all lengths in another unit, with [`Scales`] in the same one).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
-    /// Position, velocity, acceleration in the workspace, counted from its fixed origin.
+    /// Position, velocity, acceleration in the workspace, relative to its fixed origin.
     pub position: [f64; 3],
     /// The paper's `u`: the change of each quantity over one window length.
     pub increment: [f64; 3],
-    /// Force (N).
     pub force_n: f64,
 }
 
-/// Methods that solve the least-squares problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Solver {
@@ -53,7 +52,6 @@ impl Solver {
     /// Every solver, the paper's first.
     pub const ALL: [Self; 5] = [Self::LiteralF32, Self::LiteralF64, Self::PseudoInverse, Self::FreshQr, Self::Sliding];
 
-    /// Name in tables and files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::LiteralF32 => "literal-f32",
@@ -70,7 +68,6 @@ impl Solver {
         matches!(self, Self::LiteralF32 | Self::LiteralF64 | Self::PseudoInverse)
     }
 
-    /// Number of unknowns of `degree`.
     pub const fn unknowns(self, degree: usize) -> usize {
         if self.is_paper() { 3 * degree } else { 1 + 3 * degree }
     }
@@ -208,7 +205,7 @@ impl Sliding {
         Self { window, solution: Solution::new(columns), max_degree, scales }
     }
 
-    /// Adds the newest row and solves; `None` for a rejected sample, which takes up its time in the window without
+    /// Adds the newest row and solves. `None` for a rejected sample, which occupies its time in the window without
     /// data.
     pub fn push(&mut self, row: Option<&Row>) {
         let row = row.map_or(Factor::BLANK_ROW, |row| sliding_row(row, self.max_degree, &self.scales));
@@ -216,7 +213,7 @@ impl Sliding {
         self.solution.solve(self.window.current());
     }
 
-    /// The newest solutions.
+    /// Returns the newest solutions.
     pub fn fit(&self) -> Fit {
         let mut fit = Fit::none(Solver::Sliding, self.scales);
         fit.take(&self.solution, self.max_degree);
@@ -255,8 +252,8 @@ fn explicit_inverse<T: RealField>(x: &DMatrix<T>, f: &DVector<T>) -> Option<DVec
     Some(inverse * x.tr_mul(f))
 }
 
-/// `x^+ f` without the singular values below the cut-off; `None` if a number is not finite, for which the iteration
-/// would not end.
+/// `x^+ f` without the singular values below the cut-off; `None` if a number is not finite, because the iteration would
+/// then not end.
 fn pseudo_inverse(x: DMatrix<f64>, f: &DVector<f64>) -> Option<Vec<f64>> {
     if !x.iter().chain(f.iter()).all(|entry| entry.is_finite()) {
         return None;

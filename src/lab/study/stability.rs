@@ -1,15 +1,14 @@
-//! Numerical stability in extreme cases: every solver compared with the exact answer of the problem that it is meant to
-//! solve.
+//! Numerical stability in extreme cases: every solver compared with the exact solution of its own problem.
 //!
 //! Takes the number of ticks of the long run; the cases are generated here. Returns a [`Report`] with table, CSV, JSON
 //! and plots.
 //!
-//! The paper's solvers and the plain QR are given the samples unchanged. This project's solver is given them through
-//! the identifier's checks (a sample that is not finite, out of range, or whose time does not advance takes up its time
-//! in the window without data). Each is compared with the arbitrary-precision solution of its own problem: same rows,
-//! same constant, same ridge, least norm if the rows do not determine the answer. The error is that of the predicted
-//! force, at the newest sample and 50 ms later, relative to the force or to its root mean square in the window,
-//! whichever is larger.
+//! The paper's solvers and the plain QR get the samples unchanged. This project's solver gets them through the
+//! identifier's checks (a sample that is not finite, out of range, or whose time does not advance occupies its time in
+//! the window without data). Each is compared with the arbitrary-precision solution of its own problem: same rows, same
+//! constant, same ridge, minimum norm if the rows do not determine the solution. The error is the error of the
+//! predicted force, at the newest sample and 50 ms later, relative to the force or to its root mean square in the
+//! window, whichever is larger.
 
 mod cases;
 mod drift;
@@ -41,7 +40,6 @@ pub const TARGET: f64 = 1e-9;
 /// Scaled condition number up to which [`TARGET`] must be reached.
 pub const ORDINARY_CONDITION: f64 = 1e6;
 
-/// Options of this study.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Ticks of the long run, within [`Options::TICKS`].
@@ -55,11 +53,10 @@ impl Options {
     pub const TICKS: std::ops::RangeInclusive<u64> = 10_000..=1_000_000_000;
 }
 
-/// Why the study could not be made.
+/// Why the study could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum StabilityError {
-    /// The number of ticks is out of range.
-    #[error("{ticks} ticks were asked for; it must be 10000 to 1000000000")]
+    #[error("{ticks} ticks are out of range; give 10000 to 1000000000")]
     Ticks { ticks: u64 },
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -71,55 +68,47 @@ pub struct Entry {
     pub solver: Solver,
     /// Polynomial degree.
     pub degree: usize,
-    /// Number of predictions.
     pub asked: usize,
-    /// Number of predictions that were finite.
+    /// Number of finite predictions.
     pub finite: usize,
-    /// Worst relative error of the finite ones; `None` if there were none or the window itself is not finite.
+    /// Worst relative error of the finite predictions; `None` if there were none or the window itself is not finite.
     pub error: Option<f64>,
     pub unknowns: usize,
-    /// Lowest rank that the solver worked with (pseudo-inverse: above its cut-off; sliding: above the ridge; others:
-    /// exact rank).
+    /// Lowest rank that the solver used (pseudo-inverse: above its cut-off; sliding: above the ridge; others: exact
+    /// rank).
     pub rank: usize,
-    /// Whether the rows do not determine the solution exactly; then only predictions can be compared.
+    /// Whether the rows do not determine the solution exactly, so that only predictions can be compared.
     pub deficient: bool,
-    /// Largest condition number of the solver's own columns (sliding: with the ridge); `None` if infinite or undefined.
+    /// Maximum condition number of the solver's own columns (sliding: with the ridge); `None` if infinite or undefined.
     pub condition: Option<f64>,
-    /// Largest relative difference between working in metres and in millimetres (pseudo-inverse and sliding).
+    /// Maximum relative difference between working in metres and in millimetres (pseudo-inverse and sliding).
     pub unit_difference: Option<f64>,
 }
 
-/// One extreme case.
 #[derive(Clone, Debug, Serialize)]
 pub struct Extreme {
     /// Group of cases.
     pub group: &'static str,
-    /// Name in the table.
     pub name: String,
-    /// Samples per second.
     pub rate_hz: f64,
     /// Samples in the window.
     pub window: usize,
-    /// Whether the whole identifier, with all four modes, gave finite numbers at every tick.
+    /// Whether the whole identifier, with all four modes, returned finite numbers at every tick.
     pub identifier_finite: bool,
-    /// Every solver and degree.
     pub entries: Vec<Entry>,
-    /// The modes that send parameters only.
+    /// The modes that send only parameters.
     pub renderings: Vec<Rendering>,
 }
 
-/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Precision of the reference, bits.
     pub reference_bits: usize,
     /// Comparison with the targets.
     pub verdict: Verdict,
-    /// The long run of the solver.
+    /// The solver's long run.
     pub drift: Drift,
-    /// The long run of the modes that send parameters only.
+    /// The long run of the modes that send only parameters.
     pub endurance: Vec<Endurance>,
-    /// Every case.
     pub extremes: Vec<Extreme>,
 }
 
@@ -148,7 +137,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     Ok(Report { reference_bits: PRECISION_BITS, verdict, drift, endurance, extremes })
 }
 
-/// Rows of a case, and which of them are used in the window.
+/// Rows of a case, and whether each is used in the window.
 struct Stream {
     rows: Vec<Row>,
     used: Vec<bool>,

@@ -1,14 +1,14 @@
-//! For which gains, delays and tissue stiffnesses the loop is stable together with a gripping hand: simulated once,
-//! stored in a file, and looked up to mark the range of the gain slider.
+//! Gains, delays and tissue stiffnesses for which the loop is stable together with a gripping hand: simulated once,
+//! stored in a file, and used to mark the range of the gain slider.
 //!
 //! One trial: a hand presses on elastic tissue until about 1.2 N, is displaced 3 mm sideways for a moment, and then
 //! holds still. Five seconds later it must be at rest. The force is kept at standstill and the energy gate is off,
-//! which is less stable than the default settings, so the map is on the safe side. Slew limit and ceiling (4 N) act, so
+//! which is less stable than the default settings, so the map is conservative. Slew limit and force limit (4 N) act, so
 //! an unstable loop shows as a limit cycle.
 //!
-//! [`StabilityMap::committed`] reads `assets/stability_map.csv` (`mode,delay_ms,stiffness_n_m` and one letter for each gain: S, M, U).
-//! Between grid points the result is the worst of the neighbouring points; outside the grid it is that of the nearest
-//! edge.
+//! [`StabilityMap::committed`] reads `assets/stability_map.csv` (`mode,delay_ms,stiffness_n_m` and one letter for each
+//! gain: S, M, U). Between grid points the result is the worst of the neighbouring points; outside the grid the nearest
+//! edge counts.
 
 #[cfg(test)]
 mod tests;
@@ -29,13 +29,11 @@ use crate::{
     pair::{Grip, Handle, NOISE_N, Pair, RATE_HZ, Trial},
 };
 
-/// Gains of the map.
 pub const GAINS: [f64; 8] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0];
-/// Delays of the map, s.
 pub const DELAYS_S: [f64; 8] = [0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 /// Tissue stiffnesses of the map, N/m: from fat to a stiff wall.
 pub const STIFFNESSES_N_M: [f64; 8] = [12.0, 50.0, 100.0, 200.0, 400.0, 800.0, 2000.0, 6000.0];
-/// The modes of the map, in its order.
+/// In the order of the map.
 const MODES: [Mode; 7] =
     [Mode::Literal, Mode::Linear, Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
 const POINTS: usize = MODES.len() * DELAYS_S.len() * STIFFNESSES_N_M.len() * GAINS.len();
@@ -52,7 +50,6 @@ const JUDGED_S: f64 = 1.0;
 const KNOCK_S: [f64; 2] = [1.0, 1.1];
 const KNOCK_M: f64 = 3e-3;
 
-/// Options of this study: none.
 #[derive(Clone, Copy, Debug)]
 pub struct Options;
 
@@ -87,13 +84,12 @@ impl Verdict {
     }
 }
 
-/// A file that is not a valid map.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "line {line} of the stability map is not \"{expected}\" and eight letters S, M or U; create it again with nima study stability-map"
+    "line {line} of the stability map does not consist of \"{expected}\" and eight letters S, M or U; create the map again with nima study stability-map"
 )]
 pub struct MapError {
-    /// Line, from 1.
+    /// From 1.
     pub line: usize,
     /// Expected beginning of the line.
     pub expected: String,
@@ -119,16 +115,16 @@ fn around(grid: &[f64], value: f64) -> [usize; 2] {
 }
 
 impl StabilityMap {
-    /// The map built into the program; `None` if its file is damaged (a test checks it).
+    /// Returns the map built into the program; `None` if its file is damaged (a test checks it).
     pub fn committed() -> Option<&'static Self> {
         static MAP: OnceLock<Option<StabilityMap>> = OnceLock::new();
         MAP.get_or_init(|| Self::parse(include_str!("../../../assets/stability_map.csv")).ok()).as_ref()
     }
 
-    /// Parses the format that [`StabilityMap::csv`] writes.
+    /// Parses the format of [`StabilityMap::csv`].
     ///
     /// # Errors
-    /// [`MapError`] with the first line that does not have the expected form.
+    /// [`MapError`] for the first malformed line.
     pub fn parse(text: &str) -> Result<Self, MapError> {
         let mut lines = text.lines().enumerate().skip(1);
         let mut verdicts = Vec::with_capacity(POINTS);
@@ -142,7 +138,7 @@ impl StabilityMap {
         Ok(Self { verdicts })
     }
 
-    /// The map as CSV, the format of `assets/stability_map.csv`.
+    /// Returns the map as CSV, the format of `assets/stability_map.csv`.
     pub fn csv(&self) -> String {
         let mut text = "mode,delay_ms,stiffness_n_m,gain 0.25 0.5 0.75 1 1.5 2 2.5 3\n".to_owned();
         for (row, verdicts) in rows().zip(self.verdicts.chunks(GAINS.len())) {
@@ -178,8 +174,8 @@ impl StabilityMap {
         MODES.contains(&mode)
     }
 
-    /// The worst verdict of the grid points around this point. A gain of zero is stable; a value beyond the grid, or NaN, counts as the
-    /// grid's last. A mode that is not in the map counts as unstable.
+    /// Returns the worst verdict of the grid points around this point. A gain of zero is stable; a value beyond the
+    /// grid, or NaN, counts as the grid's last. A mode that is not in the map counts as unstable.
     pub fn at(&self, mode: Mode, gain: f64, delay_s: f64, stiffness_n_m: f64) -> Verdict {
         if gain <= 0.0 {
             return Verdict::Stable;
@@ -198,8 +194,8 @@ impl StabilityMap {
         worst
     }
 
-    /// The largest gain of the grid up to which all gains are stable at this delay (s) and stiffness (N/m); 0 if there
-    /// is none.
+    /// Returns the largest gain of the grid up to which all gains are stable at this delay (s) and stiffness (N/m); 0
+    /// if there is none.
     ///
     /// ```
     /// use nima_core::impedance::Mode;
@@ -228,7 +224,7 @@ impl Experiment for Options {
 }
 
 impl Findings for StabilityMap {
-    /// Markdown table of the largest stable gain by delay and stiffness, for every mode.
+    /// Returns a Markdown table of the largest stable gain by delay and stiffness, for every mode.
     fn text(&self) -> String {
         let mut text = String::new();
         for mode in MODES.into_iter().rev() {

@@ -1,4 +1,5 @@
-//! The paper's three validations, in simulation: the paper's figures, those of this project, and why they differ.
+//! The paper's three validations, in simulation: the paper's results, those of this project, and the reasons for the
+//! differences.
 
 pub mod experiment;
 pub mod isolation;
@@ -17,30 +18,25 @@ pub use table::Row;
 
 use crate::validation::isolation::Isolation;
 
-/// Why a validation could not be made.
+/// Why a validation could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum ValidationError {
-    /// A scene is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// A setting of the loop is invalid.
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// A calibration on the simulated rig failed.
     #[error("the simulated calibration failed: {0}; try another --seed")]
     Calibration(String),
-    /// The network could not be trained or used.
     #[error(transparent)]
     TipForce(#[from] TipForceError),
-    /// Letting go could not be tried.
+    /// The release study failed.
     #[error(transparent)]
     Release(#[from] crate::release::ReleaseError),
-    /// Writing to memory failed.
-    #[error("the simulated session could not be stored")]
+    #[error("cannot store the simulated session")]
     Scratch(#[source] std::io::Error),
 }
 
-/// Options of this study.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Seed of every scene and of the training.
@@ -53,31 +49,27 @@ pub struct Options {
     pub delay_s: f64,
 }
 
-/// Validation I: how well the two sensors agree after the correspondence, on pushes that were not used for the fit.
+/// Validation I: agreement of the two sensors after the correspondence, on pushes that were not used for the fit.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Agreement {
     /// Error per axis, sample by sample, N (`s1`).
     pub error_n: AxisStats,
     /// Coefficient of determination of all axes together.
     pub r2: f64,
-    /// Number of samples.
     pub samples: usize,
 }
 
-/// Results of all three validations.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Validation I.
     pub correspondence: Agreement,
-    /// Validation II.
     pub isolation: Isolation,
     /// Validation III, for each clock.
     pub rendering: Vec<Rendering>,
-    /// The paper's figures and those of this project.
+    /// The paper's results and those of this project.
     pub table: Vec<Row>,
 }
 
-/// Duration of the pushes by which Validation I is judged, s.
+/// Duration of the pushes that Validation I uses, s.
 const PUSHES_S: f64 = 60.0;
 
 /// Runs the validations; `progress` is called with the number of parts done, their total, and the name of the next. Validation III is

@@ -1,15 +1,16 @@
-//! A rig without what tells who has it and where.
+//! A rig without data that identify its owner or place.
 
 use super::RigConfig;
 
-/// Stands for the name of a rig or a scene.
+/// Replaces the name of a rig or a scene.
 pub const ANONYMOUS: &str = "anonymous";
 
 impl RigConfig {
-    /// The same without its devices and without names: a simulated rig with the same loop.
+    /// Returns the rig without its devices and names: a simulated rig with the same loop.
     #[must_use]
     pub fn anonymous(mut self) -> Self {
-        // Without `..`: a field that is added does not compile until somebody decides whether it may tell who or where.
+        // Without `..`, a new field does not compile until its author decides whether it may identify a person or a
+        // place.
         let Self {
             name,
             rate_hz: _,

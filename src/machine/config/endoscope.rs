@@ -1,4 +1,4 @@
-//! The endoscope's picture on the surgeon's monitor. Nothing of it touches the loop.
+//! The endoscope image on the surgeon's monitor. It has no effect on the loop.
 
 use nalgebra::Vector3;
 use nima_core::limits::{BASELINE_M, DISTORTION};
@@ -6,37 +6,37 @@ use serde::{Deserialize, Serialize};
 
 use super::{ConfigError, Ranges};
 
-/// Where the picture comes from, and where the endoscope looks.
+/// Source of the image, and pose of the endoscope's camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Endoscope {
     /// Motion JPEG over HTTP (`http://HOST:PORT/PATH`), H.264 over RTSP (`rtsp://HOST/PATH`), a camera of this computer (`/dev/video0`), or the
     /// path of a `.mjpeg`, a folder of JPEGs or a JPEG.
     pub url: String,
-    /// How far the picture is turned clockwise for the screen, degrees: 0, 90, 180 or 270.
+    /// Clockwise rotation of the image for the screen, degrees: 0, 90, 180 or 270.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rotation_deg: u16,
-    /// Left and right are exchanged on the screen, before it is turned.
+    /// Swaps left and right on the screen, before the rotation.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub mirror: bool,
-    /// What is cut off at the left, top, right and bottom of the picture as it comes, px.
+    /// Margins removed at the left, top, right and bottom of the unmodified image, px.
     #[serde(default, skip_serializing_if = "is_whole")]
     pub crop_px: [usize; 4],
-    /// Whether sessions have its pictures, as they come.
+    /// Whether sessions contain the images, unmodified.
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub record: bool,
-    /// The picture has two halves side by side, of a left and a right lens: what is shown of it at first. Without it, it is of one lens.
+    /// For an image with two halves side by side, from a left and a right lens: the initial view. Without it, the image
+    /// comes from one lens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<StereoView>,
-    /// How far the right lens is to the right of the left one, m; without it no forces are drawn into the right half.
+    /// Distance of the right lens to the right of the left one, m; without it no forces are drawn into the right half.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub baseline_m: Option<f64>,
-    /// The camera, of two lenses the left one; without it no forces are drawn into the picture.
+    /// The camera (of two lenses, the left one); without it no forces are drawn into the image.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<EndoscopeCamera>,
 }
 
-/// What is shown of a picture with two halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StereoView {
@@ -46,7 +46,6 @@ pub enum StereoView {
 }
 
 impl Default for Endoscope {
-    /// Without an address.
     fn default() -> Self {
         Self {
             url: String::new(),
@@ -79,46 +78,46 @@ const fn is_zero(value: &u16) -> bool {
     *value == 0
 }
 
-/// A pinhole with distortion, and its place in the workspace once that is known. Its frame: x to the right of the picture, y down, z away from the
-/// lens.
+/// A pinhole camera with distortion, and its position in the workspace once it is known. Its frame: x to the right of
+/// the image, y down, z away from the lens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EndoscopeCamera {
-    /// Width and height of the picture, px.
+    /// Width and height of the image, px.
     pub size_px: [usize; 2],
-    /// Focal length, px.
     pub focal_px: f64,
-    /// Focal length down the picture, px, where pixels are not square.
+    /// Vertical focal length, px, if the pixels are not square.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub focal_y_px: Option<f64>,
-    /// Where the lens's axis meets the picture, px; its middle if left out.
+    /// Intersection of the lens's axis with the image, px; by default its centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centre_px: Option<[f64; 2]>,
-    /// Radial distortion: the tangent `t` of the angle from the axis is seen at `t (1 + k1 t^2)`.
+    /// Radial distortion: the tangent `t` of the angle from the axis appears at `t (1 + k1 t^2)`.
     #[serde(default)]
     pub k1: f64,
     /// The next radial term, with `t^4`.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub k2: f64,
-    /// Tangential distortion.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub p1: f64,
-    /// Tangential distortion, across.
+    /// Tangential distortion, horizontal.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub p2: f64,
-    /// Place of the lens in the workspace, m; without it no forces are drawn.
+    /// Position of the lens in the workspace, m; without it no forces are drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position_m: Option<Vector3<f64>>,
     /// Roll, pitch, yaw of the camera's frame in the workspace, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world_from_camera_deg: Option<Vector3<f64>>,
-    /// Place of the lens in the frame of the endoscope's marker (`devices.endoscope`), m: the camera then follows the endoscope.
+    /// Position of the lens in the frame of the endoscope's marker (`devices.endoscope`), m: the camera then follows
+    /// the endoscope.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub n_from_camera_m: Option<Vector3<f64>>,
-    /// Roll, pitch, yaw of the camera's frame in that of the marker, degrees.
+    /// Roll, pitch, yaw of the camera's frame in the marker's frame, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub n_from_camera_deg: Option<Vector3<f64>>,
-    /// How far touched points were beside where the camera saw them, px: root mean square of held-out points, by the wizard.
+    /// Error with which touched points appear in the image, px: root mean square of held-out points, measured by the
+    /// wizard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub checked_px: Option<f64>,
 }
@@ -142,7 +141,7 @@ impl Endoscope {
         ranges.check("endoscope.rotation_deg", f64::from(turn), turns, "0, 90, 180 or 270")?;
         let size_px = self.camera.map(|camera| camera.size_px);
         let [left, top, right, bottom] = self.crop_px.map(|edge| edge as f64);
-        // Without a size, what the largest picture has.
+        // Without a size, use the size of the largest possible image.
         let [width, height] = size_px.unwrap_or([4096; 2]).map(|side| side as f64);
         let leaves = left + right <= 0.9 * width && top + bottom <= 0.9 * height;
         let most = left.max(top).max(right).max(bottom);
@@ -150,14 +149,14 @@ impl Endoscope {
             "endoscope.crop_px",
             most,
             leaves,
-            "[left, top, right, bottom] that leave a tenth of the picture",
+            "[left, top, right, bottom] that leave at least a tenth of the image",
         )?;
         if let Some(baseline_m) = self.baseline_m {
             let place = "endoscope.baseline_m";
             ranges.within(place, baseline_m, &BASELINE_M)?;
             let halves = if self.view.is_some() { 2.0 } else { 1.0 };
             ranges.check(
-                "endoscope.view (halves, beside baseline_m)",
+                "endoscope.view (halves, with baseline_m)",
                 halves,
                 halves > 1.0,
                 "2: view = \"left\", \"right\" or \"both\"",
@@ -178,7 +177,7 @@ impl EndoscopeCamera {
         }
         let [x, y] = self.centre_px.unwrap_or([0.5 * width, 0.5 * height]);
         let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
-        ranges.check("endoscope.camera.centre_px", x, inside, "within the picture")?;
+        ranges.check("endoscope.camera.centre_px", x, inside, "within the image")?;
         ranges.within("endoscope.camera.k1", self.k1, &DISTORTION)?;
         ranges.check("endoscope.camera.k2", self.k2, (-5.0..=5.0).contains(&self.k2), "-5 to 5")?;
         for (key, value) in [("endoscope.camera.p1", self.p1), ("endoscope.camera.p2", self.p2)] {
@@ -200,19 +199,19 @@ impl EndoscopeCamera {
             ("endoscope.camera.n_from_camera_deg", self.n_from_camera_deg),
         ];
         let wholes = [
-            "2: position_m and world_from_camera_deg, or none of them",
-            "2: n_from_camera_m and n_from_camera_deg, or none of them",
+            "2: position_m and world_from_camera_deg, or neither",
+            "2: n_from_camera_m and n_from_camera_deg, or neither",
         ];
         for (parts, whole) in [in_world, on_marker].into_iter().zip(wholes) {
             let count = parts.iter().filter(|(_, part)| part.is_some()).count();
-            ranges.check("endoscope.camera (parts of its place)", count as f64, count != 1, whole)?;
+            ranges.check("endoscope.camera (parts of its pose)", count as f64, count != 1, whole)?;
             for (key, part) in parts {
                 ranges.finite(key, &part.unwrap_or_default())?;
             }
         }
         let places = [in_world, on_marker].iter().filter(|parts| parts[0].1.is_some()).count();
         let one = "1: in the workspace, or on the endoscope's marker";
-        ranges.check("endoscope.camera (places)", places as f64, places < 2, one)
+        ranges.check("endoscope.camera (poses)", places as f64, places < 2, one)
     }
 }
 
@@ -237,7 +236,7 @@ mod tests {
         assert_eq!((endoscope.view, endoscope.baseline_m), (Some(super::StereoView::Both), Some(0.004)));
         let again = RigConfig::parse("rig.toml".as_ref(), &toml::to_string(&rig).unwrap()).unwrap();
         assert_eq!(again, rig);
-        assert_eq!(rig.anonymous().endoscope, None, "its address tells where it is");
+        assert_eq!(rig.anonymous().endoscope, None, "its address reveals its location");
     }
 
     #[test]

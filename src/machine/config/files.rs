@@ -14,18 +14,15 @@ use toml::de::DeTable;
 
 use crate::rig::Misread;
 
-/// Why a settings file cannot be used; the message says what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
-    /// The name is neither an embedded one nor a file.
-    #[error("there is no {kind} \"{name}\": give one of {known} or the path of a TOML file")]
+    #[error("unknown {kind} \"{name}\": use one of {known} or the path of a TOML file")]
     Unknown {
         /// `rig` or `scene`.
         kind: &'static str,
         name: String,
         known: String,
     },
-    /// The file could not be read.
     #[error("cannot read {kind} file {path}")]
     Read {
         /// `rig` or `scene`.
@@ -33,20 +30,17 @@ pub enum ConfigError {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// The file is not valid TOML for its kind.
     #[error("{kind} file {path}: {message}")]
     Parse {
         /// `rig` or `scene`.
         kind: &'static str,
-        /// Its path or embedded name.
+        /// Path or embedded name.
         path: PathBuf,
         /// Line, column and key.
         message: String,
     },
-    /// A setting of a device is invalid.
     #[error("rig \"{name}\"")]
     Device { name: String, source: Trouble },
-    /// A value is outside its range.
     #[error("{kind} \"{name}\": {key} is {value}, must be {range}")]
     Range {
         /// `rig` or `scene`.
@@ -58,10 +52,10 @@ pub enum ConfigError {
     },
 }
 
-/// Text of a file or of an embedded one of this name, and its path.
+/// Returns the text of a file or of an embedded file with this name, and its path.
 ///
 /// # Errors
-/// [`ConfigError::Unknown`] if there is no such name or file; [`ConfigError::Read`] if the file cannot be read.
+/// [`ConfigError::Unknown`] if neither exists; [`ConfigError::Read`] if the file cannot be read.
 pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result<(PathBuf, String), ConfigError> {
     if let Some((known, text)) = embedded.iter().find(|(known, _)| *known == name) {
         return Ok((PathBuf::from(known), (*text).to_owned()));
@@ -77,7 +71,7 @@ pub fn text(kind: &'static str, name: &str, embedded: &[(&str, &str)]) -> Result
     }
 }
 
-/// Reads one file of settings.
+/// Parses one settings file.
 ///
 /// # Errors
 /// [`ConfigError::Parse`] with the line of the error.
@@ -94,7 +88,7 @@ pub fn parse<T: DeserializeOwned>(kind: &'static str, path: &Path, text: &str) -
     parse_with(kind, path, text, |_| Ok(()))
 }
 
-/// The same for a file whose tables are transformed first; every value keeps its position in the text.
+/// Parses a file whose tables are transformed first; every value keeps its position in the text.
 pub(crate) fn parse_with<T: DeserializeOwned>(
     kind: &'static str,
     path: &Path,
@@ -148,7 +142,7 @@ impl Ranges<'_> {
         self.check(key, value, limits.contains(value), limits.to_string())
     }
 
-    /// Refuses a vector that is not finite. Each entry is checked on its own, because infinities can cancel in a sum.
+    /// Refuses a vector that is not finite. Each entry is checked separately, because infinities can cancel in a sum.
     ///
     /// # Errors
     /// [`ConfigError::Range`].

@@ -3,7 +3,6 @@
 use nima_core::impedance::{MAX_DEGREE, OwnMotion, Recipe, Scales};
 use serde::{Deserialize, Serialize};
 
-/// Identification part of a rig file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Identification {
@@ -11,18 +10,19 @@ pub struct Identification {
     pub window_s: f64,
     /// Highest degree identified, 1 to 5.
     pub max_degree: usize,
-    /// Compute every mode beside the one that is rendered, to compare them; otherwise only that one is computed.
+    /// Computes every mode in addition to the rendered one, for comparison; otherwise only the rendered mode is
+    /// computed.
     pub compare: bool,
-    /// The identification rests while the force lies within this, N: there is no contact. Choose five times the noise of
-    /// the force. 0: it never rests.
+    /// The identification rests while the force is within this, N, because there is no contact. Choose five times the
+    /// noise of the force. 0: it never rests.
     pub rest_n: f64,
-    /// The motion from which the leader makes the force.
+    /// The motion from which the leader computes the force.
     pub own_motion: OwnMotion,
-    /// Learn the full matrix `M` with cross-talk between the axes; this doubles the cost.
+    /// Learns the full matrix `M` with cross-talk between the axes; this doubles the cost.
     pub cross_talk: bool,
-    /// Fixed physical scales of the regressor's columns, from the rig's workspace.
+    /// Fixed scales of the regressor's columns, from the rig's workspace.
     pub scales: Scales,
-    /// How the literal and the linear mode read the paper.
+    /// Interpretation of the paper in the modes literal and linear.
     pub literal: Recipe,
 }
 

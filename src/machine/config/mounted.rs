@@ -11,14 +11,12 @@ use crate::rig::Side;
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SimulatedWrists {
-    /// On the right arm.
     pub right: Option<WristId>,
-    /// On the left arm.
     pub left: Option<WristId>,
 }
 
 impl SimulatedWrists {
-    /// Sensor and tool on the arm of this side.
+    /// Returns sensor and tool on the arm of this side.
     pub const fn of(&self, side: Side) -> Option<&WristId> {
         match side {
             Side::Right => self.right.as_ref(),
@@ -28,7 +26,8 @@ impl SimulatedWrists {
 }
 
 impl RigConfig {
-    /// Sensor and tool on the simulated arm of this side, if the rig file names them; `None` on a rig with devices.
+    /// Returns sensor and tool on the simulated arm of this side, if the rig file names them; `None` on a rig with
+    /// devices.
     pub fn simulated_wrist(&self, side: Side) -> Option<&WristId> {
         self.simulated.as_ref().filter(|_| self.devices.is_none())?.of(side)
     }
@@ -39,14 +38,13 @@ impl RigConfig {
         };
         let Some(wrists) = &self.simulated else { return Ok(()) };
         if self.devices.is_some() {
-            let allowed =
-                "it must be left out beside [devices]: there the sensors tell their serial numbers themselves";
+            let allowed = "omit it on a rig with [devices], where the sensors report their serial numbers";
             return refuse("simulated", "given", allowed);
         }
         for side in Side::ALL {
             let Some(WristId { serial_number, tool }) = wrists.of(side) else { continue };
             if !can_name_a_file(serial_number) {
-                let allowed = "1 to 64 letters, digits, '-', '_' and '.', not first a '.'";
+                let allowed = "1 to 64 letters, digits, '-', '_' and '.', not beginning with '.'";
                 return refuse(&format!("simulated.{}.serial_number", side.word()), serial_number, allowed);
             }
             if tool.trim().is_empty() {
@@ -55,7 +53,7 @@ impl RigConfig {
         }
         match (&wrists.right, &wrists.left) {
             (Some(right), Some(left)) if right.serial_number == left.serial_number => {
-                let allowed = "each arm has a sensor of its own: give them different serial numbers";
+                let allowed = "each arm has its own sensor: use different serial numbers";
                 refuse("simulated.left.serial_number", &left.serial_number, allowed)
             }
             _ => Ok(()),
@@ -78,7 +76,7 @@ mod tests {
         let path = told(|left| left.serial_number = "../x".to_owned());
         assert!(path.contains("simulated.left.serial_number") && path.contains("../x"), "{path}");
         let same = told(|left| left.serial_number = "SIM-S1-0001".to_owned());
-        assert!(same.contains("simulated.left.serial_number") && same.contains("of its own"), "{same}");
+        assert!(same.contains("simulated.left.serial_number") && same.contains("its own sensor"), "{same}");
         assert!(told(|left| left.tool = " ".to_owned()).contains("simulated.left.tool"));
         let mut real = RigConfig::load("paper").unwrap();
         real.simulated.clone_from(&good.simulated);

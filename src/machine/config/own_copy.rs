@@ -1,4 +1,5 @@
-//! Where a rig file is changed: a file of the user's stays where it is, a built-in rig is copied into the user's folder first.
+//! Location of a changed rig file: a user's file is changed in place, a built-in rig is first copied into the user's
+//! folder.
 
 use std::path::{Path, PathBuf};
 
@@ -6,8 +7,9 @@ use nima_core::calibration::frames::RigChange;
 
 use super::{RigConfig, RigFile, RigFileError};
 
-/// The file that is written when the rig of this name changes, and the rig's new name: the file itself under its own name (`None`),
-/// for a built-in rig the first free one of `NAME-2.toml`, `NAME-3.toml`, ... in `folder`, named by its number.
+/// Returns the file to write when the rig of this name changes, and the rig's new name. A user's file keeps its path
+/// and name (`None`). A built-in rig gets the first free file of `NAME-2.toml`, `NAME-3.toml`, ... in `folder`, and the
+/// number is added to its name.
 pub fn own_copy(rig: &RigConfig, name: &str, folder: &Path) -> (PathBuf, Option<String>) {
     if RigConfig::names().all(|built_in| built_in != name) {
         return (PathBuf::from(name), None);
@@ -17,8 +19,8 @@ pub fn own_copy(rig: &RigConfig, name: &str, folder: &Path) -> (PathBuf, Option<
     (path(number), Some(format!("{} {number}", rig.name)))
 }
 
-/// Applies these changes to the rig of this name and writes its file, or for a built-in rig a copy of it in `folder`; comments
-/// are kept. Returns the path and the rig as it is now.
+/// Applies these changes to the rig of this name and writes its file, or for a built-in rig a copy of it in `folder`;
+/// comments are kept. Returns the path and the changed rig.
 ///
 /// # Errors
 /// [`RigFileError`] if the rig cannot be read, would be impossible afterwards, or its file cannot be written.
@@ -36,14 +38,14 @@ pub fn own_copy(rig: &RigConfig, name: &str, folder: &Path) -> (PathBuf, Option<
 ///
 /// let name = path.to_str().ok_or("a path in letters")?;
 /// let (same, _) = change_rig(name, folder.path(), &[change.undone()])?;
-/// assert_eq!(same, path, "a file of the user's is changed where it is");
+/// assert_eq!(same, path, "a user's file is changed in place");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn change_rig(rig: &str, folder: &Path, changes: &[RigChange]) -> Result<(PathBuf, RigConfig), RigFileError> {
     let mut file = RigFile::of(rig)?;
     for change in changes {
         match &change.after {
-            // Text that is no value comes from a damaged record only, and changes nothing.
+            // Invalid text can come only from a damaged record, and changes nothing.
             Some(text) => _ = file.set_text(&change.key, text),
             None => file.remove(&change.key),
         }

@@ -1,4 +1,4 @@
-//! Rig files that the program changes: comments, order and layout of whoever wrote them are kept.
+//! Rig files that the program changes: the author's comments, order and layout are kept.
 
 use std::{
     io,
@@ -18,10 +18,10 @@ use crate::rig::{Offer, Part, PartKind, Side};
 /// let mut file = RigFile::of("emulated")?;
 /// file.set("devices.right.sensor.serial_number", "4711");
 /// assert_eq!(file.rig()?.name, "Emulated rig");
-/// assert!(file.text().contains("# The mirror image."), "comments stay");
+/// assert!(file.text().contains("# The mirror image."), "comments are kept");
 ///
 /// file.set("rate_hz", 1.0);
-/// assert!(file.rig().is_err(), "and what is impossible is refused");
+/// assert!(file.rig().is_err(), "an impossible rig is refused");
 /// # Ok::<(), nima_machine::config::RigFileError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -33,36 +33,30 @@ pub struct RigFile {
 /// A device for a part of a rig.
 #[derive(Clone, Debug)]
 pub enum Chosen {
-    /// The one that this other part has now.
+    /// The current device of another part.
     Of(Part),
-    /// One that was found and is not used yet.
+    /// A device that was found and is not used yet.
     Found(Offer),
 }
 
-/// Why a rig file cannot be changed or saved.
+/// Reason why a rig file cannot be changed or saved.
 #[derive(Debug, thiserror::Error)]
 pub enum RigFileError {
-    /// The file cannot be used, or would not be usable any more.
+    /// The file cannot be used, or would no longer be usable.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// It cannot be written.
     #[error("cannot write the rig file {path}")]
-    Write {
-        /// Its path.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
 }
 
 impl RigFile {
-    /// The embedded rig of this name, or a file.
+    /// Loads the embedded rig of this name, or a file.
     ///
     /// # Errors
-    /// As [`RigConfig::load`].
+    /// The errors of [`RigConfig::load`].
     pub fn of(name: &str) -> Result<Self, RigFileError> {
         let (path, text) = text("rig", name, &RIGS)?;
-        // The settings' own parser first: its errors name the line and the key.
+        // The settings' own parser runs first, because its errors name the line and the key.
         RigConfig::parse(&path, &text)?;
         let document = text.parse().map_err(|error: toml_edit::TomlError| ConfigError::Parse {
             kind: "rig",
@@ -72,7 +66,8 @@ impl RigFile {
         Ok(Self { path, document })
     }
 
-    /// Sets the value of a key with dots (`devices.right.sensor.port`); the comment beside it stays. Tables that are missing are made.
+    /// Sets the value of a dotted key (`devices.right.sensor.port`) and keeps the comment next to it. Creates missing
+    /// tables.
     pub fn set(&mut self, key: &str, value: impl Into<Value>) {
         let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
         let mut table: &mut dyn toml_edit::TableLike = self.document.as_table_mut();
@@ -88,7 +83,7 @@ impl RigFile {
         if let Some(before) = table.get(last).and_then(Item::as_value) {
             *value.decor_mut() = before.decor().clone();
         }
-        // A key that stands there stays as it is: the lines above it, the head of the file among them, are its own.
+        // An existing key is kept unchanged, because the lines above it, such as the head of the file, belong to it.
         match table.get_mut(last) {
             Some(item) => *item = Item::Value(value),
             None => {
@@ -97,25 +92,26 @@ impl RigFile {
         }
     }
 
-    /// The same for a list of texts.
+    /// Sets a list of texts.
     pub fn set_all(&mut self, key: &str, values: impl IntoIterator<Item = String>) {
         self.set(key, values.into_iter().collect::<Value>());
     }
 
-    /// The value of a key with dots as TOML text, without its comment; `None` where there is none.
+    /// Returns the value of a dotted key as TOML text, without its comment; `None` if the key does not exist.
     pub fn value(&self, key: &str) -> Option<String> {
         let mut value = self.item(key)?.as_value()?.clone();
         value.decor_mut().clear();
         Some(value.to_string())
     }
 
-    /// Sets the value of a key with dots from TOML text, as [`value`](Self::value) gives it; false if that is no value.
+    /// Sets the value of a dotted key from TOML text, as returned by [`value`](Self::value); returns false if the text
+    /// is not a value.
     pub fn set_text(&mut self, key: &str, text: &str) -> bool {
         let value = text.parse::<Value>();
         value.map(|value| self.set(key, value)).is_ok()
     }
 
-    /// Takes a key with dots away, with everything below it.
+    /// Removes a dotted key with everything below it.
     pub fn remove(&mut self, key: &str) {
         let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
         let mut table: &mut dyn toml_edit::TableLike = self.document.as_table_mut();
@@ -126,8 +122,8 @@ impl RigFile {
         table.remove(last);
     }
 
-    /// Exchanges what two keys with dots hold; nothing where one of them is missing. Comments go with what they stand
-    /// above, and the order of the keys stays.
+    /// Swaps the values of two dotted keys; does nothing if one of them is missing. Comments move with the lines below
+    /// them, and the order of the keys is kept.
     pub fn swap(&mut self, one: &str, other: &str) {
         let (Some(mut first), Some(mut second)) = (self.item(one).cloned(), self.item(other).cloned()) else { return };
         let [of_first, of_second] = [&first, &second].map(|item| item.as_table().and_then(Table::position));
@@ -137,13 +133,13 @@ impl RigFile {
         self.put(other, first);
     }
 
-    /// Puts `chosen` in the place of this part: the device of another part of the same kind, which then gets this one's,
-    /// or one that was found.
+    /// Replaces the device of this part by `chosen`: the device of another part of the same kind, which then gets this
+    /// part's device, or a device that was found.
     pub fn choose(&mut self, part: Part, chosen: &Chosen) {
         match chosen {
             Chosen::Of(other) => self.swap(part.key(), other.key()),
             Chosen::Found(offer) => {
-                // Of the tracker's two kinds of place the other one must go.
+                // A tracker has either an address or a port: remove the other one.
                 for (key, other) in [("address", "port"), ("port", "address")] {
                     if part == Part::Tracker && offer.changes.iter().any(|(changed, _)| *changed == key) {
                         self.remove(&format!("{}.{other}", part.key()));
@@ -156,7 +152,7 @@ impl RigFile {
         }
     }
 
-    /// Exchanges the devices of this kind between right and left.
+    /// Swaps the devices of this kind between right and left.
     pub fn exchange_sides(&mut self, kind: PartKind) {
         if let (Some(right), Some(left)) = (kind.of(Side::Right), kind.of(Side::Left)) {
             self.swap(right.key(), left.key());
@@ -180,20 +176,19 @@ impl RigFile {
         *item = new;
     }
 
-    /// The text of the file.
     pub fn text(&self) -> String {
         self.document.to_string()
     }
 
-    /// The rig that it describes now.
+    /// Returns the rig that the file describes now.
     ///
     /// # Errors
-    /// As [`RigConfig::load`].
+    /// The errors of [`RigConfig::load`].
     pub fn rig(&self) -> Result<RigConfig, ConfigError> {
         RigConfig::parse(&self.path, &self.text())
     }
 
-    /// Writes it there, whole or not at all; a rig that would be refused is not written.
+    /// Writes the file to `path`, completely or not at all; an invalid rig is not written.
     ///
     /// # Errors
     /// [`RigFileError`].
@@ -208,7 +203,7 @@ impl RigFile {
     }
 }
 
-/// Puts a table where another one stood in the text; what is below it follows.
+/// Puts a table at the position of another table in the text; its content follows.
 fn set_position(item: &mut Item, position: Option<isize>) {
     match item {
         Item::Table(table) => {
@@ -337,7 +332,7 @@ mod tests {
         };
         let tracker = other_place(&file);
         file.choose(Part::Tracker, &Chosen::Found(offer(vec![(tracker, "/dev/ttyUSB9".into())])));
-        assert_ne!(other_place(&file), tracker, "one of the two keys is there");
+        assert_ne!(other_place(&file), tracker, "one of the two keys exists");
         let left = file.rig().unwrap().devices.unwrap().left.unwrap();
         let sensor = left.sensor.bota().unwrap();
         assert_eq!((sensor.port.as_str(), sensor.serial_number.as_deref()), ("/dev/ttyACM7", Some("853")));

@@ -1,5 +1,3 @@
-//! Teleoperation part of a rig file.
-
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
     frames::from_roll_pitch_yaw_deg,
@@ -11,14 +9,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Teleoperation {
-    /// Distance of the tip per distance of the hand.
+    /// Travel of the tip per travel of the hand.
     pub scale: f64,
-    /// Orientation of the endoscope: roll, pitch, yaw of `world_from_view`, degrees (picture: x right, y down, z into
-    /// it).
+    /// Orientation of the endoscope: roll, pitch, yaw of `world_from_view`, degrees (image: x right, y down, z into the
+    /// image).
     pub world_from_view_deg: Vector3<f64>,
-    /// Orientation of the leader relative to the picture.
+    /// Orientation of the leader relative to the image.
     pub leader: LeaderMount,
-    /// The same as it was measured: roll, pitch, yaw of `view_from_leader`, degrees; in place of [`leader`](Self::leader).
+    /// Measured orientation of the leader: roll, pitch, yaw of `view_from_leader`, degrees; replaces
+    /// [`leader`](Self::leader).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_from_leader_deg: Option<Vector3<f64>>,
 }
@@ -34,11 +33,11 @@ impl Default for Teleoperation {
     }
 }
 
-/// Orientation of a leader relative to the picture.
+/// Orientation of a leader relative to the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeaderMount {
-    /// The leader's axes are those of the picture.
+    /// The leader's axes coincide with the image axes.
     #[default]
     Workspace,
     /// An Omega below the screen, with its base towards the user.
@@ -46,17 +45,18 @@ pub enum LeaderMount {
 }
 
 impl Teleoperation {
-    /// The mapping; the default one if the numbers are not finite (which [`RigConfig::validate`] refuses).
+    /// Returns the mapping; the default mapping if the numbers are not finite (which [`RigConfig::validate`] refuses).
     pub fn mapping(&self) -> Mapping {
         self.seen(&from_roll_pitch_yaw_deg(&self.world_from_view_deg), self.scale)
     }
 
-    /// The mapping for an endoscope of this orientation; the default one if the numbers are not finite.
+    /// Returns the mapping for an endoscope with this orientation; the default mapping if the numbers are not finite.
     pub fn seen(&self, world_from_view: &UnitQuaternion<f64>, scale: f64) -> Mapping {
         Mapping::new(world_from_view, &self.view_from_leader(), scale).unwrap_or_default()
     }
 
-    /// Orientation of the leader relative to the picture, as measured or else as usual for its mount.
+    /// Returns the orientation of the leader relative to the image: the measured one, otherwise the typical one for its
+    /// mount.
     pub fn view_from_leader(&self) -> UnitQuaternion<f64> {
         match (&self.view_from_leader_deg, self.leader) {
             (Some(measured_deg), _) => from_roll_pitch_yaw_deg(measured_deg),

@@ -23,63 +23,66 @@ pub use watchdog::Watchdog;
 
 use crate::rig::{Act, DeviceEvent, Prompt, Side, View};
 
-/// State of an arm pair.
 pub type LoopState = State<Fault>;
 
-/// Commands of a screen or a script to the loop. Applied at the start of a tick, in order, at most a few per tick.
+/// Commands of a screen or a script to the loop. They are applied in order at the start of a tick, at most a few per
+/// tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Render with this mode from the next tick on.
     SetMode(Mode),
-    /// Compute every mode beside the one that is rendered, to compare them (true), or only that one (false).
+    /// Compute every mode in addition to the rendered one, for comparison (true), or only the rendered one (false).
     Compare(bool),
-    /// Feedback gain, within [`nima_core::limits::GAIN`]; a value above is refused here, see [`Command::SetGainAboveOne`].
+    /// Feedback gain, within [`nima_core::limits::GAIN`]; a larger value is refused here, see
+    /// [`Command::SetGainAboveOne`].
     SetGain(f64),
     /// Feedback gain, within [`nima_core::limits::GAIN_ABOVE_ONE`], which the operator must confirm separately.
     SetGainAboveOne(f64),
     /// One-way delay of the link, s, within [`nima_core::limits::DELAY_S`].
     SetDelay(f64),
-    /// Speed below which nothing is rendered, m/s, within [`nima_core::limits::DEAD_BAND_M_S`].
+    /// Speed below which no force is rendered, m/s, within [`nima_core::limits::DEAD_BAND_M_S`].
     SetDeadBand(f64),
     /// Keep rendering at standstill (true) or fade to zero in the dead band as the paper does (false).
     SetStaticHold(bool),
     /// Give the person at the arm of this side an instruction for the calibration; in idle only.
     Prompt(Side, Prompt),
-    /// Lead the handle of this side from the screen to this position, m (workspace), at most [`crate::rig::GUIDE_MAX_M`] from the
-    /// middle on each axis; `None` ends this. A stop and a fault end it too.
+    /// Guide the handle of this side from the screen to this position, m (workspace), at most
+    /// [`crate::rig::GUIDE_MAX_M`] from the centre on each axis; `None`, a stop or a fault ends it.
     Guide(Side, Option<Vector3<f64>>),
-    /// Hold the gripper of this side's handle open from the screen, this far, rad, at most [`crate::rig::GRIP_MAX_RAD`]; `None` ends
-    /// this. A stop and a fault end it too. On a simulated rig only.
+    /// Hold the gripper of this side's handle open from the screen by this angle, rad, at most
+    /// [`crate::rig::GRIP_MAX_RAD`]; `None`, a stop or a fault ends it. On a simulated rig only.
     Grip(Side, Option<f64>),
-    /// Do this in the training task, with the tip of this side's instrument. On a simulated rig only.
+    /// Perform this act in the training task, with the tip of this side's instrument. On a simulated rig only.
     Task(Side, Act),
-    /// The simulated hand lets go of its handle (true) or takes it again (false). On a simulated rig only.
+    /// The simulated hand releases its handle (true) or grips it again (false). On a simulated rig only.
     LetGo(bool),
-    /// Leave the governor out (false) or let it watch again (true). On a simulated rig only, where nobody holds the handle.
+    /// Switch the governor off (false) or on (true). On a simulated rig only, where no person holds the handle.
     SetGovernor(bool),
-    /// Distance of the tip per distance of the hand, within [`nima_core::limits::SCALE`].
+    /// Travel of the tip per travel of the hand, within [`nima_core::limits::SCALE`].
     SetScale(f64),
     /// Start force feedback and motion of every arm pair that is idle. Refused while the force at the tip is not known.
     Engage,
-    /// The same as [`Command::Engage`], for one arm pair.
+    /// Like [`Command::Engage`], for one arm pair.
     EngageOne(Side),
     /// End force feedback and motion without latching a stop.
     Rest,
     /// Zero force and follower at rest at once; latched until released.
     Stop,
-    /// First of two steps out of a stop or a fault: back to idle. Refused while the cause of a fault is still present.
+    /// First of two steps to leave a stop or a fault: back to idle. Refused while the cause of a fault is still
+    /// present.
     ReleaseStop,
-    /// Fire this watchdog on purpose: what it watches over is withheld until it raises its fault. Only while every arm pair is idle, so
-    /// that there is neither force nor motion; the fault is latched as any other one.
+    /// Test this watchdog: its input is suppressed until it raises its fault. Only while every arm pair is idle, so
+    /// that there is neither force nor motion; the fault is latched like any other fault.
     TestWatchdog(Watchdog),
-    /// A ready check of today has passed with the devices of the rig (true), or none has. Matters where the rig file requires one.
+    /// A ready check passed today with the devices of the rig (true), or none has (false). Relevant if the rig file
+    /// requires one.
     Checked(bool),
     /// End the loop; its thread returns its final timing.
     Shutdown,
 }
 
 impl Command {
-    /// Whether the pair of this side carries it out. Letting go is for the right hand.
+    /// Returns whether the pair of this side carries out the command. Releasing the handle concerns the right hand.
     pub fn concerns(self, side: Side) -> bool {
         match self {
             Self::EngageOne(of) | Self::Prompt(of, _) | Self::Guide(of, _) | Self::Grip(of, _) | Self::Task(of, _) => {
@@ -105,55 +108,52 @@ impl Command {
     }
 }
 
-/// One tick of an arm pair as the screen and the recorder see it. Frame: workspace (z up, tissue at rest near z = 0).
+/// One tick of an arm pair, for the screen and the recorder. Frame: workspace (z up, tissue at rest near z = 0).
 #[derive(Clone, Copy, Debug)]
 pub struct Tick {
-    /// Counts executed ticks from 0.
     pub index: u64,
     pub side: Side,
     /// Time of the tick on the loop's clock, seconds since its start.
     pub t_s: f64,
-    /// State of the pair in this tick.
     pub state: LoopState,
     pub mode: Mode,
-    /// Delay of the link in force, seconds.
+    /// Active delay of the link, seconds.
     pub delay_s: f64,
     /// Commanded tip position of the hand, m (workspace); while not engaged, the position of the tip.
     pub leader_m: Vector3<f64>,
-    /// Instrument tip (follower), m.
     pub tip_m: Vector3<f64>,
-    /// Present tip force measured at the follower, N (on the instrument); [`UNKNOWN_N`] while it is not known.
+    /// Current tip force measured at the follower, N (on the instrument); [`UNKNOWN_N`] while it is unknown.
     pub measured_n: Vector3<f64>,
-    /// How the tip force was obtained.
+    /// Source and processing of the tip force.
     pub force: ForceReport,
     /// Readings of the wrist sensor and of the sensors used for calibration, if the rig has them and they are not too old.
     pub wrist: Option<WristSample>,
-    /// What the frame calibrations are made of; empty without a new measurement.
+    /// Input of the frame calibrations; empty without a new measurement.
     pub frames: FrameSample,
-    /// How the endoscope is turned, as the tracker sees its marker.
+    /// Orientation of the endoscope, from the tracker's measurement of its marker.
     pub view: View,
     /// Instruction to the person at the arm.
     pub prompt: Prompt,
-    /// Position to which the screen leads the handle, m.
+    /// Position to which the screen guides the handle, m.
     pub guide_m: Option<Vector3<f64>>,
-    /// The tip force as the link delivers it now: delayed DFR, N; [`UNKNOWN_N`] before the first one, and once it is too old.
+    /// Tip force that the link delivers now: delayed DFR, N; [`UNKNOWN_N`] before the first delivery, and when the
+    /// force is too old.
     pub delayed_n: Vector3<f64>,
     /// Force of each mode in this tick before the gates, N, indexed by [`Mode::index`].
     pub asked_n: [Vector3<f64>; SLOTS],
     /// Force commanded to the hand after all gates, N.
     pub rendered_n: Vector3<f64>,
-    /// Effect of the gates in this tick.
     pub gates: GateReport,
-    /// Settings of the gates (the gain is the operator's; the ramp is in `gates`).
+    /// Settings of the gates (`gain` is the operator's setting; the ramped gain is in `gates`).
     pub gate_settings: ChainSettings,
     /// Result of the identification in this tick.
     pub identification: nima_core::impedance::Report,
-    /// How late this tick woke after its deadline, s (0 on the virtual clock).
+    /// Delay of the wake-up of this tick after its deadline, s (0 on the virtual clock).
     pub wake_s: f64,
     /// Duration of the work of the previous tick, s.
     pub work_s: f64,
-    /// Time from the arrival of the oldest measurement of the previous tick until its force was given to the device, s;
-    /// `None` if it had no measurement or the clock is virtual.
+    /// Time from the arrival of the oldest measurement of the previous tick until its force was sent to the device, s;
+    /// `None` without a measurement or on a virtual clock.
     pub sample_to_force_s: Option<f64>,
     pub missed: u64,
     /// Ticks dropped so far because the queue to the screen was full.
@@ -161,50 +161,47 @@ pub struct Tick {
 }
 
 impl Tick {
-    /// The tip force measured at the follower, N; `None` while it is not known.
+    /// Returns the tip force measured at the follower, N; `None` while it is unknown.
     pub fn known_n(&self) -> Option<Vector3<f64>> {
         Some(self.measured_n).filter(|force_n| force_n.iter().all(|x| x.is_finite()))
     }
 }
 
-/// A fault: zero force, shown with its cause and cure. The first fault is kept until it is released.
+/// A fault: the force is zero, and the screen shows cause and remedy. The first fault is kept until it is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The rig delivered no finite sample for longer than the age limit.
     SourceSilent,
     /// The loop stalled: it missed too many periods in a row, or the supervisor found it silent.
     LoopStalled {
-        /// Periods missed in a row.
+        /// Number of consecutive missed periods.
         periods: u64,
     },
-    /// Engaged while the force at the tip is not known.
-    ForceUnknown {
-        /// Why.
-        source: ForceSource,
-    },
+    /// The force at the tip is unknown while engaged.
+    ForceUnknown { source: ForceSource },
     /// A device of the force path was lost.
     DeviceLost {
         /// Index into the rig's roster.
         device: u8,
         loss: Loss,
     },
-    /// Engaged, and the arm does not follow or the handle's motors are off.
+    /// The arm does not follow, or the handle's motors are off, while engaged.
     DrivesOff,
     /// The other arm pair has a fault.
     OtherArm,
-    /// The rig delivered samples, but too many of them were missing or not finite.
+    /// The rig delivered samples, but too many were missing or not finite.
     SamplesLost,
-    /// Engaged, and nothing has arrived over the link for too long.
+    /// No packet has arrived over the link for too long while engaged.
     LinkSilent,
     /// The time did not advance by whole periods.
     ClockJumped,
-    /// Measurements are timely and finite, but not plausible.
+    /// Measurements are in time and finite, but not plausible.
     Implausible { what: Implausible },
     /// The machine at the other end of the network is stopped.
     FarEnd { stop: FarStop },
 }
 
-/// Priority of a state for display: of two arm pairs the one with the larger number is shown first.
+/// Returns the priority of a state for display: of two arm pairs the one with the larger number is shown first.
 pub const fn attention(state: LoopState) -> u8 {
     match state {
         LoopState::Engaged => 0,
@@ -218,10 +215,8 @@ pub const fn attention(state: LoopState) -> u8 {
     }
 }
 
-/// Something that happens once and is reported at that moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// The loop changed its state.
     StateChanged {
         /// Time on the loop's clock, s.
         t_s: f64,
@@ -230,24 +225,22 @@ pub enum Event {
         to: LoopState,
         why: Why,
     },
-    /// A fault was raised.
     FaultRaised {
         /// Time on the loop's clock, s.
         t_s: f64,
         side: Side,
         fault: Fault,
     },
-    /// A command was refused, or an engagement in progress was given up.
+    /// A command was refused, or an engagement in progress was abandoned.
     CommandRefused {
         /// Time on the loop's clock, s.
         t_s: f64,
         side: Side,
-        /// The command.
         command: Command,
         why: Refusal,
     },
     /// A device of the rig connected or was lost.
     Device(DeviceEvent),
-    /// What the operating system granted the real-time thread.
+    /// Privileges that the operating system granted to the real-time thread.
     Scheduling(Scheduling),
 }

@@ -1,49 +1,44 @@
-//! Why the loop did not carry out a command.
+//! Reasons why the loop did not carry out a command.
 
 use nima_core::safety::Implausible;
 
 use super::{Fault, ForceSource, LoopState};
 use crate::rig::Obstacle;
 
-/// Why a command was refused, or an engagement given up.
+/// Reason why a command was refused, or an engagement abandoned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    /// Not possible in this state: a stop or a fault is latched, a device is missing, or the pair is already as
-    /// requested.
+    /// Not possible in this state: a stop or a fault is latched, a device is missing, or the pair is already in the
+    /// requested state.
     State(LoopState),
-    /// The cause of a fault is still present.
     StillPresent(Fault),
-    /// The force at the tip is not known, for this reason.
+    /// The force at the tip is unknown, for this reason.
     ForceUnknown(ForceSource),
-    /// A measurement is not plausible.
     Implausible(Implausible),
-    /// The arm cannot be engaged from its present position.
+    /// The arm cannot be engaged from its current position.
     Obstacle(Obstacle),
-    /// The tracker does not see the endoscope.
+    /// The tracker does not detect the endoscope.
     EndoscopeUnseen,
-    /// The drives did not come on in time.
     DrivesOff,
-    /// The arm was still moving when the time limit was reached.
+    /// The arm was still moving at the time limit.
     Moving,
-    /// Nobody held the handle until the time limit was reached.
+    /// No hand held the handle until the time limit.
     HandAbsent,
-    /// The clutch stayed pressed until the time limit was reached.
+    /// The clutch was still pressed at the time limit.
     ClutchPressed,
-    /// The rig file requires a ready check, and none of today has passed.
+    /// The rig file requires a ready check, and none has passed today.
     NotChecked,
-    /// The value is outside its range.
     OutOfRange,
-    /// The follower is at the other end of a network, whose delay is measured and not set.
+    /// The follower is at the other end of a network, where the delay is measured and cannot be set.
     DelayIsMeasured,
-    /// A person may hold the handle: this is for simulated rigs.
+    /// Only possible on simulated rigs, because a person may hold the handle.
     SimulatedOnly,
-    /// The rig has no arm on this side.
     NoSuchArm,
 }
 
 impl Refusal {
-    /// Whether it only says that an arm is already as requested. This is not reported if the other arm carried out the
-    /// command.
+    /// Returns whether the refusal only says that an arm is already in the requested state. It is not reported if the
+    /// other arm carried out the command.
     pub(crate) const fn is_already_so(self) -> bool {
         matches!(self, Self::State(LoopState::Idle | LoopState::Ready | LoopState::Engaged | LoopState::Clutched))
     }

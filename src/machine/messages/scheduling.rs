@@ -1,6 +1,5 @@
 //! Real-time privileges that the operating system granted.
 
-/// Privileges granted to the loop's thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Scheduling {
     /// `SCHED_FIFO` was granted.
@@ -12,7 +11,7 @@ pub struct Scheduling {
 }
 
 impl Scheduling {
-    /// What is missing; `None` if all was granted.
+    /// Returns the missing privilege; `None` if all were granted.
     pub const fn lack(&self) -> Option<Lack> {
         if cfg!(not(target_os = "linux")) {
             return Some(Lack::NotLinux);
@@ -24,29 +23,26 @@ impl Scheduling {
         }
     }
 
-    /// What is missing and how to get it, for the user; `None` if all was granted.
+    /// Returns the missing privilege and how to get it, for the user; `None` if all were granted.
     pub fn advice(&self) -> Option<String> {
         let [cause, cure] = self.lack()?.words();
         Some(format!("{cause}: {cure}"))
     }
 }
 
-/// What a loop lacks for real time.
+/// A privilege that a loop lacks for real time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
-    /// The operating system has none, as far as this program uses it.
+    /// This program does not use real-time functions of this operating system.
     NotLinux,
-    /// A priority above that of other programs.
     Priority,
-    /// Memory that is never paged out.
     Memory,
 }
 
 impl Lack {
-    /// What is missing, and what to do.
     pub const fn words(self) -> [&'static str; 2] {
         match self {
-            Self::NotLinux => ["real-time scheduling is used on Linux only", "expect more missed ticks here"],
+            Self::NotLinux => ["real-time scheduling is available on Linux only", "expect more missed ticks here"],
             Self::Priority => [
                 "no real-time priority",
                 "add the line \"@realtime - rtprio 95\" to /etc/security/limits.d/realtime.conf, join the group realtime and log in again",

@@ -1,4 +1,4 @@
-//! The newest tick of each arm that a point looks at.
+//! The newest tick of each arm of a check.
 
 use super::Subject;
 use crate::{
@@ -21,22 +21,21 @@ impl Arms {
         self.ticks[tick.side.index()] = Some(*tick);
     }
 
-    /// The newest tick of every arm; `None` until each has sent one.
+    /// Returns the newest tick of every arm; `None` until each has sent one.
     pub(super) fn ticks(&self) -> Option<Vec<&Tick>> {
         self.sides.iter().map(|side| self.ticks[side.index()].as_ref()).collect()
     }
 
-    /// Whether every arm is in such a state.
+    /// Returns whether the state of every arm satisfies `is`.
     pub(super) fn all(&self, is: impl Fn(LoopState) -> bool) -> bool {
         self.ticks().is_some_and(|ticks| ticks.iter().all(|tick| is(tick.state)))
     }
 
-    /// The first arm in such a state.
     pub(super) fn find(&self, is: impl Fn(LoopState) -> bool) -> Option<&Tick> {
         self.ticks.iter().flatten().find(|tick| is(tick.state))
     }
 
-    /// The newest time on the loop's clock, s.
+    /// Returns the newest time on the loop's clock, s.
     pub(super) fn now_s(&self) -> Option<f64> {
         self.ticks.iter().flatten().map(|tick| tick.t_s).max_by(f64::total_cmp)
     }

@@ -1,4 +1,5 @@
-//! The bias of the wrist sensor is where it was when it was calibrated: the force that remains at rest, out of the trocar.
+//! Checks that the wrist sensor's bias is unchanged since its calibration, by the force that remains at rest outside
+//! the trocar.
 
 use nima_core::calibration::gravity::{Drift, DriftCheck, NotChecked, StillSettings};
 
@@ -15,7 +16,7 @@ use crate::{
 pub(super) struct Bias {
     side: Side,
     check: Option<(DriftCheck, f64)>,
-    /// As far as it is known.
+    /// Unknown as long as it is `None`.
     is_in_trocar: Option<bool>,
 }
 
@@ -28,7 +29,7 @@ impl Bias {
 
 impl Item for Bias {
     fn tick(&mut self, tick: &Tick) {
-        // A device that was lost for a moment has engaged nothing; the session ends the point when an arm is engaged.
+        // The brief loss of a device does not engage an arm; the session ends the check when an arm is engaged.
         if tick.side != self.side || tick.state != LoopState::Idle {
             return;
         }

@@ -1,4 +1,4 @@
-//! The largest force in force is the one of the rig file, as it is now.
+//! Checks that the active force ceiling equals the one in the current rig file.
 
 use nima_core::safety::{Ceiling as Limits, ChainSettings};
 

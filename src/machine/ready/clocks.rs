@@ -1,4 +1,5 @@
-//! The loop keeps its deadlines, its clock goes as the computer's, and the computer's date can be right.
+//! Checks that the loop meets its deadlines, that its clock agrees with the computer's, and that the computer's date is
+//! possible.
 
 use super::{
     Ask, Cause, Figure, Subject, Unit,
@@ -6,18 +7,19 @@ use super::{
 };
 use crate::messages::Tick;
 
-/// Duration of the measurement, s.
+/// Duration of the measurement, s: 2000 ticks at 1 kHz, so that the limit of one missed period in a hundred is not
+/// decided by a single pause of the computer.
 const TAKES_S: f64 = 2.0;
 /// More than one missed period in a hundred is felt as roughness.
 const MISSED_MAX: f64 = 0.01;
-/// Both clocks may differ by this much: ticks wait for whoever reads them, s.
+/// Maximum difference of both clocks, s; ticks wait until they are read.
 const APART_MAX_S: f64 = 0.25;
 
 #[derive(Debug)]
 pub(super) struct Clocks {
     is_date_behind: bool,
     newest: Option<Tick>,
-    /// The first tick, and when it was looked at.
+    /// The first tick, and when it was read.
     first: Option<(Tick, f64)>,
 }
 
@@ -29,7 +31,7 @@ impl Clocks {
 
 impl Item for Clocks {
     fn tick(&mut self, tick: &Tick) {
-        // One arm is enough: both have the same clock.
+        // One arm is enough, because both have the same clock.
         if self.newest.is_none_or(|newest| newest.side == tick.side) {
             self.newest = Some(*tick);
         }

@@ -1,4 +1,4 @@
-//! Every device of the rig file is there and stays for a second.
+//! Checks that every device of the rig file is connected and stays connected for a second.
 
 use nima_devices::Standing;
 
@@ -8,14 +8,14 @@ use super::{
 };
 use crate::rig::Healths;
 
-/// A device counts as steady after this time, s.
+/// A device counts as steady after this time, s. Chosen.
 const STEADY_S: f64 = 1.0;
 
 #[derive(Debug)]
 pub(super) struct Devices {
     count: usize,
     healths: Option<Healths>,
-    /// Since when all are there, and how often devices had been lost then.
+    /// Time since which all are connected, and the number of losses at that time.
     since: Option<(f64, u64)>,
 }
 

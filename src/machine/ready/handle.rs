@@ -1,4 +1,4 @@
-//! The handle is free: let go it rests, no force is asked of it, and it goes where the hand moves it.
+//! Checks that the handle is free: released, it rests; in idle it has no force; and its reading follows the hand.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::calibration::frames::Move;
@@ -12,30 +12,32 @@ use crate::{
     rig::{Exchange, Side},
 };
 
-/// Let go, it rests within this, m, for this time, s.
+/// A released handle rests within this distance, m, for this time, s.
 const RESTS_M: f64 = 1e-3;
 const RESTS_S: f64 = 0.6;
-/// Way after which its direction is judged, m.
+/// Travel after which its direction is evaluated, m: far more than a tremor (0.2 mm), so that the direction shows the
+/// hand's motion.
 const WAY_M: f64 = 0.010;
-/// Largest angle between what was asked and what is measured, degrees: a person's hand, and nearer to this axis than to any other.
+/// Maximum angle between the requested and the measured direction, degrees: allows for a person's hand, and is nearer
+/// to this axis than to any other.
 const ASKEW_MAX_DEG: f64 = 40.0;
-/// The way that is asked for.
+/// The requested direction.
 const WAY: Move = Move::Right;
 
 #[derive(Debug)]
 pub(super) struct Handle {
     side: Side,
     view_from_leader: UnitQuaternion<f64>,
-    /// Where it rests, m (leader), and since when, s on the loop's clock.
+    /// Position at which it rests, m (leader), and the time since which it rests, s on the loop's clock.
     rest: Option<(Vector3<f64>, f64)>,
-    /// It has rested: from here it is moved, m.
+    /// Position from which it is to be moved after resting, m.
     from_m: Option<Vector3<f64>>,
-    /// The farthest it came, in the picture's frame, m.
+    /// Farthest displacement, m, in the image frame.
     far_m: Vector3<f64>,
-    /// How far it went by itself, m.
+    /// Distance that it moved by itself, m.
     drifted_m: f64,
     force_n: f64,
-    /// Where the other handle was when this one was to be moved, and how far it came, m.
+    /// Position of the other handle when this one was to be moved, and its farthest distance from it, m.
     other: Option<(Vector3<f64>, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! What every point of the list is.
+//! Interface of every check in the list.
 
 use std::fmt::Debug;
 
@@ -8,38 +8,36 @@ use crate::{
     rig::{Gauges, Healths},
 };
 
-/// How a point stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Progress {
-    /// It goes on, and needs this.
+    /// In progress, and needs this.
     Asking(Ask),
     Passed(Figure),
     Failed(Cause),
 }
 
-/// Time that a person has for what is asked, s.
+/// Time for a person to do what is requested, s.
 const PATIENCE_S: f64 = 30.0;
 
-/// One point of the list while it is looked at. Times are those that the session is given, s.
+/// A check while it runs. Times are the session's, s.
 pub(super) trait Item: Debug + Send {
     fn tick(&mut self, _tick: &Tick) {}
     fn gauges(&mut self, _gauges: &Gauges) {}
     fn healths(&mut self, _healths: &Healths) {}
-    /// A command that it sent was refused.
+    /// Handles the refusal of a command that the check sent.
     fn refused(&mut self, _why: Refusal) {}
-    /// How it stands at this time.
+    /// Returns the progress at this time.
     fn look(&mut self, now_s: f64) -> Progress;
-    /// Why it has failed when its time is over.
+    /// Returns the reason for failure when the time is over.
     fn late(&self) -> Cause;
-    /// Time that it has, s.
     fn patience_s(&self) -> f64 {
         PATIENCE_S
     }
-    /// A command to be sent, once.
+    /// Returns a command to send, once.
     fn command(&mut self) -> Option<Command> {
         None
     }
-    /// Whether it has to do with stops and faults; for every other one they are released first.
+    /// Returns whether the check involves stops and faults; for every other check they are released first.
     fn expects_latch(&self) -> bool {
         false
     }

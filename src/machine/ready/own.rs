@@ -1,4 +1,5 @@
-//! When the instrument of one side is moved by hand, its own arm and its own marker move, and those of the other side rest.
+//! Checks that when the instrument of one side is moved by hand, its own arm and its own marker move, and those of the
+//! other side rest.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -11,12 +12,12 @@ use crate::{
     rig::{Exchange, SIDES, Side},
 };
 
-/// The instrument was moved when its flange is so far from where it was, m; a marker on it moves by half of that at least.
+/// The instrument was moved when its flange is this far from its earlier position, m; a marker on it moves by at least
+/// half of that.
 const MOVED_M: f64 = 0.05;
-/// What rests moves by less, m.
+/// A resting part moves by less than this, m.
 const RESTS_M: f64 = 0.010;
 
-/// How far a point has come, m.
 #[derive(Clone, Copy, Debug, Default)]
 struct Way {
     from_m: Option<Vector3<f64>>,

@@ -1,4 +1,4 @@
-//! One push in a known direction: the force is measured in that direction, in the workspace.
+//! Checks one push in a known direction: the force must be measured in that direction, in the workspace.
 
 use nalgebra::Vector3;
 
@@ -11,13 +11,16 @@ use crate::{
     rig::{Exchange, Side},
 };
 
-/// A push begins at this force, N, and is judged by its mean over this time, s.
+/// A push begins at this force, N, and is evaluated by its mean over this time, s: ten times the noise of a noisy
+/// sensor, so that a touch in passing does not count.
 const FELT_N: f64 = 1.0;
 const FELT_S: f64 = 0.2;
-/// Largest angle between the push and what is measured, degrees: a person's hand, and far from any other axis.
+/// Maximum angle between the push and the measured force, degrees: allows for a person's hand, and is far from any
+/// other axis.
 const ASKEW_MAX_DEG: f64 = 30.0;
 
-/// To the right: it tells a turn about the vertical from one about the axis away from the person, which gravity cannot.
+/// Returns the direction to the right: it distinguishes a turn about the vertical from a turn about the axis away from
+/// the person, which gravity cannot.
 fn asked() -> nalgebra::UnitVector3<f64> {
     Vector3::x_axis()
 }
@@ -25,15 +28,15 @@ fn asked() -> nalgebra::UnitVector3<f64> {
 #[derive(Debug)]
 pub(super) struct Push {
     side: Side,
-    /// There is a calibration, or none is needed.
+    /// A calibration exists, or none is needed.
     is_calibrated: bool,
-    /// Why the force is not known at present: it is not while the sensor is being opened.
+    /// Reason why the force is currently unknown, for example while the sensor is being opened.
     source: Option<ForceSource>,
     most_n: f64,
-    /// Since when it is felt, s on the loop's clock; sum of the forces, N.
+    /// Time since which the push is measured, s on the loop's clock; sum of the forces, N.
     felt: Option<(f64, Vector3<f64>)>,
     by_deg: Option<f64>,
-    /// What the other sensor measured when the push was asked for, N, and since when it measures something else.
+    /// Force of the other sensor when the push was requested, N, and the time since which it has changed.
     other_n: Option<Vector3<f64>>,
     other_felt_s: Option<f64>,
     other_felt: bool,
@@ -56,7 +59,8 @@ impl Push {
     }
 }
 
-/// Force of the surroundings on the tip, N (`world`), without the network, which knows the trocar only.
+/// Returns the force of the surroundings on the tip, N (`world`), without the network, which is valid only in the
+/// trocar.
 fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
     match (&tick.force.gravity_free, tick.wrist.as_ref().and_then(|sample| sample.world_from_s1)) {
         (Some(wrench), Some(world_from_s1)) => Some(world_from_s1 * wrench.force_n),
@@ -65,7 +69,7 @@ fn force_n(tick: &Tick) -> Option<Vector3<f64>> {
 }
 
 impl Push {
-    /// The other instrument is at rest, so a change of what its sensor measures is a force on it.
+    /// Monitors the other sensor: its instrument is at rest, so a changed force is a force on that instrument.
     fn other(&mut self, tick: &Tick) {
         let Some(force_n) = tick.wrist.as_ref().map(|sample| sample.raw.force_n).or_else(|| tick.known_n()) else {
             self.other_felt_s = None;
@@ -99,7 +103,7 @@ impl Item for Push {
         let (since_s, sum_n) = self.felt.get_or_insert((tick.t_s, Vector3::zeros()));
         *sum_n += force_n;
         if tick.t_s - *since_s >= FELT_S {
-            // What is pushed pushes back.
+            // The pushed object pushes back.
             self.by_deg = Some(angle_deg(sum_n, &-asked().into_inner()));
         }
     }

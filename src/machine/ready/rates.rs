@@ -1,4 +1,5 @@
-//! The test of every device ([`Checkup`]): rate, losses, age, noise, range. What is found must be found twice.
+//! The test of every device ([`Checkup`]): rate, losses, age, noise, range. A finding must be confirmed by a second
+//! test.
 
 use super::{
     Ask, Cause, Figure, Subject, Unit,
@@ -17,9 +18,9 @@ pub(super) struct Rates {
     rig: RigConfig,
     parts: Vec<Option<Part>>,
     blocks: Vec<Gauges>,
-    /// A sensor did not rest: it is measured again.
+    /// A sensor did not rest: the measurement is repeated.
     moved: Option<(usize, Finding)>,
-    /// Devices in which the measurement before found something: once may be chance, twice is not.
+    /// Devices with a finding in the previous measurement: one finding may be chance, two are not.
     suspects: Vec<usize>,
 }
 
@@ -43,7 +44,7 @@ impl Rates {
     }
 }
 
-/// How far the rate is off, as a share.
+/// Returns the deviation of the rate, as a fraction.
 fn off(checkup: &Checkup) -> f64 {
     checkup.nominal_hz.map_or(0.0, |nominal_hz| (checkup.rate_hz / nominal_hz - 1.0).abs())
 }
@@ -62,7 +63,7 @@ impl Item for Rates {
         let tested = self.tested();
         self.blocks.clear();
         let moved = |found: &Finding| matches!(found, Finding::Moved { .. });
-        // A handle may be in somebody's hand; its noise does not matter here.
+        // A person may hold the handle; its noise does not matter here.
         let is_handle = |place: usize| self.parts[place].is_some_and(|part| part.kind() == PartKind::Handle);
         let all = || tested.iter().flat_map(|(place, test)| test.findings.iter().map(|found| (*place, *found)));
         let findings = || all().filter(|(place, found)| !(moved(found) && is_handle(*place)));

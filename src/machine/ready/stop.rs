@@ -1,4 +1,4 @@
-//! The stop works: it is pressed, every arm stops without force, and it is released as always.
+//! Checks the stop: it is pressed, every arm stops without force, and it is released as usual.
 
 use super::{
     Ask, Cause, Figure, Subject, Unit,
@@ -13,7 +13,7 @@ const TOGETHER_S: f64 = 0.1;
 #[derive(Debug)]
 pub(super) struct Stop {
     arms: Arms,
-    /// When the first and the last arm had stopped, s on the loop's clock.
+    /// Times at which the first and the last arm had stopped, s on the loop's clock.
     first_s: Option<f64>,
     last_s: Option<f64>,
     force_n: f64,

@@ -1,4 +1,5 @@
-//! The trocar is where the rig file has it: the line of the shaft, by the arm's joints, passes it. Along the shaft nothing is seen.
+//! Checks that the trocar is at its position in the rig file: the line of the shaft, from the arm's joints, passes
+//! through it. A displacement along the shaft is not detected.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -15,8 +16,8 @@ use crate::{
     rig::{Exchange, Healths, Obstacle, Side},
 };
 
-/// The instrument is in its trocar when the shaft passes this near, m: half of what an engagement permits is far more than a trocar
-/// that has moved unnoticed.
+/// The instrument is in its trocar if the shaft passes within this distance, m: half of the limit for an engagement is
+/// far more than an unnoticed displacement of the trocar.
 const NEAR_M: f64 = kinematics::START_MISS_M;
 /// The arm rests when its tip moves by less than this, m, for this time, s.
 const RESTS_M: f64 = 0.3e-3;
@@ -28,11 +29,11 @@ pub(super) struct Trocar {
     /// The shaft in the flange's frame, the base in the workspace, and the trocar there (m).
     arm: Option<(ShaftLine, Isometry3<f64>, Vector3<f64>)>,
     watch: Option<TrocarWatch>,
-    /// Where the tip rests, m, and since when, s on the loop's clock.
+    /// Position at which the tip rests, m, and the time since which it rests, s on the loop's clock.
     rest: Option<(Vector3<f64>, f64)>,
     has_rested: bool,
     miss_m: f64,
-    /// As the rig's geometry tells it.
+    /// From the rig's geometry.
     exchange: Option<Exchange>,
 }
 
@@ -49,7 +50,7 @@ impl Trocar {
         Self { side, arm, watch: None, rest: None, has_rested: false, miss_m: f64::INFINITY, exchange: None }
     }
 
-    /// Notes whether the tip rests.
+    /// Records whether the tip rests.
     fn follow(&mut self, tick: &Tick) {
         let (rest_m, since_s) = *self.rest.get_or_insert((tick.tip_m, tick.t_s));
         self.has_rested = tick.t_s - since_s >= RESTS_S;

@@ -1,4 +1,4 @@
-//! A watchdog is fired on purpose: its own fault comes in time, without force, and a person releases it.
+//! Tests a watchdog: its own fault is raised in time, without force, and a person releases it.
 
 use super::{
     Ask, Cause, Figure, Subject, Unit,
@@ -7,10 +7,11 @@ use super::{
 };
 use crate::messages::{Command, LoopState, Refusal, Tick, Watchdog as Which};
 
-/// Time until the fault, s on the loop's clock, beyond the link's own delay: the longest limit of a watchdog is 0.1 s, the rest is the
-/// command's way to the loop.
+/// Maximum time until the fault, s on the loop's clock, beyond the link's own delay: the longest limit of a watchdog is
+/// 0.1 s, the rest is the command's path to the loop.
 const BITES_WITHIN_S: f64 = 0.4;
-/// Without a fault after this time it does not bite, s.
+/// Without a fault after this time the watchdog has not tripped, s: longer than [`BITES_WITHIN_S`] and the largest
+/// delay of the link (1 s), so that a late fault is still told as late.
 const GIVEN_UP_S: f64 = 2.5;
 
 #[derive(Debug)]
@@ -18,11 +19,11 @@ pub(super) struct Watchdog {
     which: Which,
     arms: Arms,
     within_s: f64,
-    /// When the command was sent: on the clock of whoever looks, and on the loop's.
+    /// Time at which the command was sent: on the session's clock, and on the loop's.
     sent: Option<(f64, f64)>,
     is_sent: bool,
     refused: Option<Refusal>,
-    /// When the last arm had its fault, s on the loop's clock.
+    /// Time of the last arm's fault, s on the loop's clock.
     bitten_s: Option<f64>,
     cause: Option<Cause>,
 }

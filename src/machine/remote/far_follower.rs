@@ -1,4 +1,4 @@
-//! The operator's rig: the handle here, the arm and its sensor at the other end of a network.
+//! The operator's rig: the handle is here, the arm and its sensor at the other end of a network.
 
 use nima_core::{
     calibration::frames::FrameSample,
@@ -16,7 +16,7 @@ use crate::{
     rig::{Identified, Inputs, Obstacle, Outputs, Rig, SIDES, Sensed, Side, View, devices_of},
 };
 
-/// Joins a rig's handles with arms at another machine. What the rig itself measures of arms and sensors is not used.
+/// Joins a rig's handles with arms at another machine. The rig's own measurements of arms and sensors are not used.
 #[derive(Debug)]
 pub struct FarFollower<R, W> {
     local: R,
@@ -27,26 +27,25 @@ pub struct FarFollower<R, W> {
     buffer: [u8; MESSAGE_MAX],
 }
 
-/// What the other machine told last.
 #[derive(Clone, Copy, Debug)]
 struct Heard {
     message: FollowerMessage,
-    /// When it was played out, s.
+    /// Time of its playout, s.
     at_s: f64,
     delay: RoundTrip,
 }
 
-/// What this machine tells of one side.
+/// State of one side that this machine sends.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
     state: Option<LoopState>,
     engagements: u8,
-    /// Opening of the gripper when it was last read.
+    /// Opening of the gripper at its last reading, rad.
     gripper_rad: Option<f64>,
     outputs: Option<Outputs>,
 }
 
-/// The time from a command to the answer to it, in whole ticks. Play-out keeps it constant but for slow changes.
+/// The time from a command to its answer, in whole ticks. The playout keeps it constant except for slow changes.
 #[derive(Clone, Copy, Debug)]
 struct RoundTrip {
     mean_s: f64,
@@ -54,15 +53,15 @@ struct RoundTrip {
 }
 
 impl RoundTrip {
-    /// Averaging, in messages.
+    /// Averaging, in messages. Chosen.
     const MEMORY: f64 = 200.0;
 
     fn first(seconds: f64, rate_hz: f64) -> Self {
         Self { mean_s: seconds, ticks: (seconds * rate_hz).round() as u16 }
     }
 
-    /// It moves on by whole ticks, and only when the mean is clearly nearer to another one: each change makes the follower begin
-    /// its judgement of the past anew.
+    /// Changes by whole ticks, and only when the mean is clearly nearer to another tick: each change makes the follower
+    /// restart its evaluation of the past.
     fn step(&mut self, seconds: f64, rate_hz: f64) {
         self.mean_s += (seconds - self.mean_s) / Self::MEMORY;
         let ticks = self.mean_s * rate_hz;
@@ -78,17 +77,14 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
         Self { local, wire, rate_hz, heard: None, sides: [Told::default(); SIDES], buffer: [0; MESSAGE_MAX] }
     }
 
-    /// The rig that is at this machine.
     pub const fn local(&self) -> &R {
         &self.local
     }
 
-    /// What carries the messages.
     pub const fn wire(&self) -> &W {
         &self.wire
     }
 
-    /// What carries the messages.
     pub const fn wire_mut(&mut self) -> &mut W {
         &mut self.wire
     }
@@ -109,7 +105,7 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             if message.t_s <= last.message.t_s {
                 return;
             }
-            // Two messages may come in one tick: the parameters of the first are not lost.
+            // Two messages may arrive in one tick: keep the parameters of the first one.
             if last.at_s >= now_s {
                 keep_parameters(&mut message.sides, &last.message.sides);
             }
@@ -151,7 +147,7 @@ impl<R: Rig, W: Wire> FarFollower<R, W> {
             obstacle: far.is_obstructed.then_some(Obstacle::FarEnd),
             age_s: here.age_s,
             silent_s: now_s - heard.at_s,
-            // The other machine judges its own devices.
+            // The other machine checks the plausibility of its own devices.
             raw: RawReadings { handle: here.raw.handle, ..RawReadings::NONE },
         })
     }

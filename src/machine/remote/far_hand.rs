@@ -1,40 +1,38 @@
-//! The hand at the other end as the loop here sees it.
+//! The hand at the other end, as used by the loop here.
 
 use nalgebra::Vector3;
 
-/// What is behind after a gap is made up for at this speed at most, m/s, or at that of the hand itself if it is faster: so a tip is never
-/// led faster than a hand moves.
+/// After a gap, the remaining displacement is made up at this speed at most, m/s, or at the hand's own speed if it is
+/// faster, so that a tip never moves faster than a hand.
 const CATCH_UP_M_S: f64 = 0.18;
 
-/// Moves as the commands do, and only while they are to be followed, so that a new beginning is no jump.
+/// Moves by the commanded displacements, and only while they are to be followed, so that a restart is not a jump.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FarHand {
     at_m: Vector3<f64>,
-    /// What it was told to move and has not moved yet, m.
+    /// Displacement that was commanded but not made yet, m.
     behind_m: Vector3<f64>,
     speed_m_s: f64,
 }
 
 impl FarHand {
-    /// Where it is, m.
     pub(super) const fn at_m(&self) -> Vector3<f64> {
         self.at_m
     }
 
-    /// It moved by so much over this time.
+    /// Adds a displacement (m) that took this time (s).
     pub(super) fn told(&mut self, moved_m: &Vector3<f64>, over_s: f64) {
         self.behind_m += moved_m;
         self.speed_m_s = if over_s > 0.0 { moved_m.norm() / over_s } else { 0.0 };
     }
 
-    /// Nobody is to follow it.
     pub(super) fn rest(&mut self) {
         self.behind_m = Vector3::zeros();
     }
 
-    /// One period of the loop.
+    /// Advances by one period of the loop.
     pub(super) fn advance(&mut self, period_s: f64) {
-        // A little more than the hand itself: the times of two messages are rounded.
+        // A little more than the hand's speed, because the times of two messages are rounded.
         let most_m = CATCH_UP_M_S.max(1.001 * self.speed_m_s) * period_s;
         let behind_m = self.behind_m.norm();
         let share = if behind_m > most_m { most_m / behind_m } else { 1.0 };
@@ -56,7 +54,7 @@ mod tests {
         for tick in 1..500 {
             hand.told(&Vector3::new(0.8e-3, 0.0, 0.0), PERIOD_S);
             hand.advance(PERIOD_S);
-            assert!((hand.at_m().x - 0.8e-3 * f64::from(tick)).abs() < 1e-12, "0.8 m/s is no gap");
+            assert!((hand.at_m().x - 0.8e-3 * f64::from(tick)).abs() < 1e-12, "0.8 m/s is not a gap");
         }
     }
 
@@ -66,7 +64,7 @@ mod tests {
         let mut told_m = 0.0;
         let mut before_m = 0.0;
         for tick in 0..400 {
-            // 120 mm/s, and 50 ms of silence.
+            // 120 mm/s, with 50 ms of silence.
             if !(100..150).contains(&tick) {
                 let ticks = if tick == 150 { 51.0 } else { 1.0 };
                 hand.told(&Vector3::new(0.12e-3 * ticks, 0.0, 0.0), ticks * PERIOD_S);

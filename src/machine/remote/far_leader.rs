@@ -1,4 +1,4 @@
-//! The follower's rig: arm and sensor here, the hand at the other end of a network.
+//! The follower's rig: arm and sensor are here, the hand at the other end of a network.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -19,40 +19,39 @@ use crate::{
     rig::{Inputs, Outputs, Rig, SIDES, Side, Switches, View, devices_of},
 };
 
-/// The parameters of one rendering are sent every so many ticks, in turn where several are computed. Fits are renewed 200 times a
-/// second.
+/// The parameters of one rendering are sent once per this many ticks, in turn if several are computed. Fits are renewed
+/// 200 times per second.
 const PARAMETERS_EVERY: u64 = 10;
-/// The errors of the modes are told every so many ticks: they are read, and nothing depends on them.
+/// The errors of the modes are sent once per this many ticks: they are only displayed, and nothing depends on them.
 const ERRORS_EVERY: u64 = 100;
-/// Answers go on for so long after the last message, s: so the other machine hears why this one stopped.
+/// Answers continue for this long after the last message, s, so that the reason for this machine's stop reaches the other one.
 const ANSWERS_FOR_S: f64 = 1.0;
-/// Two messages are of one loop if their times differ by what passed here, to this, s.
+/// Two messages come from one loop if their time difference equals the time that passed here, within this tolerance, s.
 const SAME_CLOCK_S: f64 = 0.2;
-/// The identification learns what happens over the delay, and begins anew with another one. It keeps the one that it has while the true one
-/// differs by no more than this share, or these ticks: a line with jitter changes it by a tick every second.
+/// The identification learns over the delay, and restarts when the delay changes. It keeps its delay while the true one
+/// differs by at most this fraction, or these ticks: a connection with jitter changes the delay by a tick every second.
 const SAME_DELAY: f64 = 0.05;
 const SAME_DELAY_TICKS: f64 = 2.0;
-/// Most commands that follow from one message.
+/// Maximum number of commands from one message.
 const COMMANDS_MAX: usize = 8;
 
-/// The rig file as the follower's machine uses it: the commanded tip comes in the frame of the world already, and no hand here feels a
-/// force.
+/// Returns the rig file adapted to the follower's machine: the commanded tip is already in the frame of the world, and
+/// no hand here feels a force.
 #[must_use]
 pub fn at_follower(rig: &RigConfig) -> RigConfig {
     let gates = ChainSettings { gain: 0.0, ..rig.gates.without_governor() };
     RigConfig { teleoperation: Teleoperation::default(), gates, ..rig.clone() }
 }
 
-/// Joins a rig's arms with hands at another machine. What the rig itself measures of handles is not used, and they get no force.
+/// Joins a rig's arms with hands at another machine. The rig's own measurements of handles are not used, and the
+/// handles get no force.
 #[derive(Debug)]
 pub struct FarLeader<R, W> {
     local: R,
     wire: W,
     rate_hz: f64,
     heard: Option<Heard>,
-    /// The hands as the loop here sees them.
     hands: [FarHand; SIDES],
-    /// What this machine's pairs were last.
     states: [Option<LoopState>; SIDES],
     inputs: [Option<Inputs>; SIDES],
     commands: [Option<Command>; COMMANDS_MAX],
@@ -62,16 +61,17 @@ pub struct FarLeader<R, W> {
     buffer: [u8; MESSAGE_MAX],
 }
 
-/// What the operator's machine told last.
+/// The last message of the operator's machine.
 #[derive(Clone, Copy, Debug)]
 struct Heard {
     message: LeaderMessage,
-    /// When it was played out, s.
+    /// Time of its playout, s.
     at_s: f64,
 }
 
 impl<R: Rig, W: Wire> FarLeader<R, W> {
-    /// Joins the arms of `local` with the hands behind `wire`, for a loop of this rate (Hz) that is made of [`at_follower`].
+    /// Joins the arms of `local` with the hands behind `wire`, for a loop of this rate (Hz) created from
+    /// [`at_follower`].
     pub fn new(local: R, wire: W, rate_hz: f64) -> Self {
         Self {
             local,
@@ -88,27 +88,23 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         }
     }
 
-    /// What the rig here measured last: the hands there have no part in it.
+    /// Returns the last measurements of the rig here, without the remote hands.
     pub const fn measured(&self) -> &[Option<Inputs>; SIDES] {
         &self.inputs
     }
 
-    /// The rig that is at this machine.
     pub const fn local(&self) -> &R {
         &self.local
     }
 
-    /// The rig that is at this machine.
     pub const fn local_mut(&mut self) -> &mut R {
         &mut self.local
     }
 
-    /// What carries the messages.
     pub const fn wire(&self) -> &W {
         &self.wire
     }
 
-    /// What carries the messages.
     pub const fn wire_mut(&mut self) -> &mut W {
         &mut self.wire
     }
@@ -125,7 +121,8 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         self.heard = newest;
         self.commands = [None; COMMANDS_MAX];
         if let Some(heard) = newest.filter(|heard| heard.at_s >= now_s) {
-            // Another console, or one that was started anew, has another clock and other counts: nothing was asked for in between.
+            // A different or restarted console has a different clock and different counts: no command was given in
+            // between.
             let goes_on = |before: &Heard| {
                 let told_s = heard.message.t_s - before.message.t_s;
                 let passed_s = heard.at_s - before.at_s;
@@ -149,8 +146,8 @@ impl<R: Rig, W: Wire> FarLeader<R, W> {
         }
     }
 
-    /// The commands that follow from a message; `before`: the one before it. Without one nothing begins: only what both messages count
-    /// differently was asked for in between.
+    /// Derives the commands from a message; `before`: the previous message. Without a previous message no command
+    /// follows, because only counts that differ between both messages are commands.
     fn follow(&mut self, now: &LeaderMessage, before: Option<&LeaderMessage>) {
         if before.is_none_or(|before| before.mode != now.mode) {
             self.push(Command::SetMode(now.mode));
@@ -230,7 +227,7 @@ impl<R: Rig, W: Wire> Rig for FarLeader<R, W> {
         let Some(heard) = self.heard.filter(|heard| now_s - heard.at_s <= ANSWERS_FOR_S) else { return };
         let turn = (self.ticks.is_multiple_of(PARAMETERS_EVERY)).then_some(self.ticks / PARAMETERS_EVERY);
         let tells_errors = self.ticks % ERRORS_EVERY == 1;
-        // Since the command came it has grown older here.
+        // Add the time that has passed here since the command arrived.
         let t_s = heard.message.t_s + (now_s - heard.at_s);
         let mut message = FollowerMessage { t_s, sides: [None; SIDES] };
         for bulletin in bulletins.iter().flatten() {
@@ -255,7 +252,7 @@ fn join(here: &Inputs, told: &LeaderSide, position_m: Vector3<f64>) -> Inputs {
         hand: Hand { position_m, orientation: told.world_from_jaws },
         gripper_rad: told.gripper_rad,
         view: View::Fixed,
-        // The follower moves only while the operator's pair is engaged; who holds the handle is judged there.
+        // The follower moves only while the operator's pair is engaged; the presence of a hand is checked there.
         switches: Switches { clutch: told.intent != Intent::Follow, presence: None },
         raw: RawReadings { handle: None, ..here.raw },
         ..*here

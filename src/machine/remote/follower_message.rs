@@ -1,4 +1,4 @@
-//! What the follower's machine answers in every tick.
+//! The answer of the follower's machine in every tick.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -15,16 +15,14 @@ use crate::{
     rig::{SIDES, Side},
 };
 
-/// What is told of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent facts, each with its own reader")]
 pub(super) struct FollowerSide {
     pub(super) tip_m: Vector3<f64>,
     pub(super) world_from_jaws: Option<UnitQuaternion<f64>>,
     pub(super) grip_n: Option<f64>,
-    /// The arm follows its commands.
     pub(super) powered: bool,
-    /// The arm cannot be engaged from where it is.
+    /// The arm cannot be engaged from its current position.
     pub(super) is_obstructed: bool,
     pub(super) stop: Option<FarStop>,
     pub(super) source: ForceSource,
@@ -36,10 +34,9 @@ pub(super) struct FollowerSide {
     pub(super) errors_n: Option<[f32; SLOTS]>,
 }
 
-/// A message of the follower's machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FollowerMessage {
-    /// When the command was given that was in force, by the clock of the operator's loop, s.
+    /// Time at which the active command was given, on the clock of the operator's loop, s.
     pub(super) t_s: f64,
     pub(super) sides: [Option<FollowerSide>; SIDES],
 }

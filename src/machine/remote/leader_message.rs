@@ -1,4 +1,4 @@
-//! What the operator's machine tells the follower's in every tick.
+//! The message of the operator's machine to the follower's machine in every tick.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::impedance::Mode;
@@ -6,15 +6,13 @@ use nima_core::impedance::Mode;
 use super::packing::{PER_M, PER_RAD, Packer, Unpacker, number_of_side, side_of_number};
 use crate::rig::{SIDES, Side};
 
-/// What the operator's pair wants of the follower.
+/// Request of the operator's pair to the follower.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Intent {
-    /// Drives off.
     #[default]
     Rest,
     /// Drives on, at rest: an engagement has begun, or the clutch is pressed.
     Hold,
-    /// Follow.
     Follow,
     /// Stopped, by the operator or by a fault.
     Stop,
@@ -24,32 +22,30 @@ impl Intent {
     const ALL: [Self; 4] = [Self::Rest, Self::Hold, Self::Follow, Self::Stop];
 }
 
-/// What is told of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeaderSide {
     pub(super) intent: Intent,
-    /// Engagements and releases so far, counting on from 255 to 0.
+    /// Number of engagements and of releases so far, wrapping from 255 to 0.
     pub(super) engagements: u8,
     pub(super) releases: u8,
-    /// Commanded tip, m; while nothing is commanded, the tip as it was last told.
+    /// Commanded tip, m; without a command, the last reported tip.
     pub(super) tip_m: Vector3<f64>,
     pub(super) world_from_jaws: Option<UnitQuaternion<f64>>,
     pub(super) gripper_rad: Option<f64>,
 }
 
-/// A message of the operator's machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeaderMessage {
     /// Time of its loop, s.
     pub(super) t_s: f64,
-    /// From a command to the answer to it, ticks of the loop.
+    /// Time from a command to its answer, ticks of the loop.
     pub(super) delay_ticks: u16,
     pub(super) mode: Mode,
     pub(super) compares: bool,
     pub(super) sides: [Option<LeaderSide>; SIDES],
 }
 
-/// Every mode by its number on the wire.
+/// Returns every mode in the order of its number in the protocol.
 pub(super) fn modes() -> impl Iterator<Item = Mode> {
     Mode::ALL.into_iter().chain(Mode::BASELINES)
 }

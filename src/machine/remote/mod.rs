@@ -1,14 +1,18 @@
-//! One rig at two places: the handle at the operator's machine, arm and sensors at the follower's, a network between them.
+//! One rig at two places: the handle at the operator's machine, arm and sensors at the follower's, and a network
+//! between them.
 //!
-//! Each machine runs the whole loop, interlock and gates included, over a rig of which one half is real and the other half is what
-//! the network brings. [`FarFollower`] is the operator's rig: the handle here, tip and identified force from there. [`FarLeader`]
-//! is the follower's: arm and sensor here; the hand is the commanded tip from there. Either machine stops both; neither resumes by
-//! itself: an engagement and a release are counted at the operator's machine, and the follower's obeys a count that moved on, once.
+//! Each machine runs the whole loop, including interlock and gates, over a rig with one real half and one half that
+//! arrives over the network. [`FarFollower`] is the operator's rig: the handle is local, tip and identified force are
+//! remote. [`FarLeader`] is the follower's rig: arm and sensor are local, and the commanded tip replaces the hand. Each
+//! machine stops both; neither resumes by itself. The operator's machine counts engagements and releases, and the
+//! follower's machine carries out each increase of a count once.
 //!
-//! Times on the wire are those of the operator's loop. The follower returns with each answer the time of the command that was in
-//! force, so that every age is a difference on one clock, and the rendering corrects over the whole way there and back.
+//! Times in messages belong to the clock of the operator's loop. With each answer the follower returns the time of its
+//! active command, so that every age is a difference on one clock, and the rendering corrects over the whole round
+//! trip.
 //!
-//! A [`Wire`] carries the messages; that of the crate `nima-network` is encrypted and evens out delay and loss.
+//! A [`Wire`] carries the messages; the implementation in the crate `nima-network` encrypts them and compensates delay
+//! and loss.
 
 mod far_follower;
 mod far_hand;
@@ -27,8 +31,8 @@ use crate::{
     runtime::Assembly,
 };
 
-/// The assembly of a loop with one half of its rig at another machine: `here` is what is at this one. The loop of a follower is to be made
-/// of [`at_follower`].
+/// Returns the assembly of a loop with one half of its rig at another machine; `here` is the local half. Create the
+/// loop of a follower from [`at_follower`].
 #[must_use]
 pub fn joined(assembly: Assembly, wire: Box<dyn Wire>, here: Ends) -> Assembly {
     let Assembly { rig, rate_hz, .. } = assembly;
@@ -40,15 +44,15 @@ pub fn joined(assembly: Assembly, wire: Box<dyn Wire>, here: Ends) -> Assembly {
     Assembly { rig, ..assembly }
 }
 
-/// Longest message, bytes.
+/// Maximum length of a message, bytes: below the 1280 bytes that every IPv6 link carries unfragmented (RFC 8200).
 pub const MESSAGE_MAX: usize = 1100;
 
 /// Carries messages between two machines. An implementation neither waits nor allocates.
 pub trait Wire: Send {
-    /// Sends one message, which was made at `now_s` of this machine's loop.
+    /// Sends one message, created at `now_s` of this machine's loop.
     fn send(&mut self, now_s: f64, message: &[u8]);
 
-    /// Calls `take` with each message whose time to be played out has come, oldest first.
+    /// Calls `take` with each message whose playout time has come, oldest first.
     fn receive(&mut self, now_s: f64, take: &mut dyn FnMut(&[u8]));
 }
 
@@ -62,6 +66,6 @@ impl<W: Wire + ?Sized> Wire for Box<W> {
     }
 }
 
-/// The other machine is gone when nothing has come for so long, s. The force is zero long before (the age gate), and a pair that is
-/// driven has then failed with the link as its cause.
+/// The other machine is gone when no message has arrived for this long, s. The age gate removes the force long before,
+/// and an engaged pair has then failed with the link as its cause.
 const GONE_AFTER_S: f64 = 0.5;

@@ -1,6 +1,7 @@
-//! Numbers as bytes and back, least significant byte first, into and from buffers of fixed size.
+//! Packs numbers into bytes and unpacks them, least significant byte first, in buffers of fixed size.
 //!
-//! A message goes a thousand times a second: what is measured or commanded is written as whole numbers of a unit far below its noise.
+//! A message is sent a thousand times per second: measurements and commands are whole numbers of a unit far below their
+//! noise.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -8,16 +9,16 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use crate::rig::Side;
 
-/// Unit of a time, s: 48 bits reach for 325 days.
+/// Units per second: 48 bits cover 325 days.
 const TIME_PER_S: f64 = 1e7;
-/// Units of what is written in 24 bits: of a length, up to 4.2 m; of a force, up to 168 N; of an angle, up to 4.2 rad.
+/// Units of 24-bit numbers: a length covers 4.2 m, a force 168 N, an angle 4.2 rad.
 pub(super) const PER_M: f64 = 2e6;
 pub(super) const PER_N: f64 = 5e4;
 pub(super) const PER_RAD: f64 = 2e6;
-/// Steps of a component of a quaternion that is not its largest, from 0 to 1 / sqrt(2): 20 bits with its sign.
+/// Steps of a quaternion component other than the largest, from 0 to 1 / sqrt(2): 20 bits with its sign.
 const TURN_STEPS: f64 = 524_287.0;
 
-/// The number of a side in a message.
+/// Returns the number of a side in a message.
 pub(super) const fn number_of_side(side: Side) -> u8 {
     match side {
         Side::Right => 0,
@@ -25,12 +26,12 @@ pub(super) const fn number_of_side(side: Side) -> u8 {
     }
 }
 
-/// The side with this number in a message.
+/// Returns the side with this number in a message.
 pub(super) fn side_of_number(number: u8) -> Option<Side> {
     Side::ALL.into_iter().find(|side| number_of_side(*side) == number)
 }
 
-/// Writes a message. What does not fit is left out, and the message is then no message ([`Packer::done`]).
+/// Writes a message. If something does not fit, the result is not a message ([`Packer::done`]).
 pub(super) struct Packer<'a> {
     buffer: &'a mut [u8],
     len: usize,
@@ -64,14 +65,14 @@ impl<'a> Packer<'a> {
         self.bytes(&number.to_le_bytes());
     }
 
-    /// A time that is not negative, s.
+    /// Writes a non-negative time, s.
     pub(super) fn time(&mut self, time_s: f64) {
         let units = (time_s * TIME_PER_S).round();
         self.fits &= (0.0..281_474_976_710_656.0).contains(&units);
         self.bytes(&(units as u64).to_le_bytes()[..6]);
     }
 
-    /// A number in 24 bits, with so many steps per unit. One that is beyond them is in no message.
+    /// Writes a number in 24 bits, with this many steps per unit. A number beyond that range invalidates the message.
     pub(super) fn scaled(&mut self, number: f64, per_unit: f64) {
         let steps = (number * per_unit).round();
         self.fits &= (-8_388_608.0..8_388_608.0).contains(&steps);
@@ -82,7 +83,8 @@ impl<'a> Packer<'a> {
         vector.iter().for_each(|x| self.scaled(*x, per_unit));
     }
 
-    /// The three smaller components of the quaternion whose largest is positive, and which that is: to 3e-6 rad.
+    /// Writes the three smaller components of the quaternion whose largest is positive, and the index of the largest:
+    /// accurate to 3e-6 rad.
     pub(super) fn turn(&mut self, turn: &UnitQuaternion<f64>) {
         let coords = turn.coords;
         let largest = coords.iamax();
@@ -96,7 +98,6 @@ impl<'a> Packer<'a> {
         self.bytes(&bits.to_le_bytes());
     }
 
-    /// The message, if all of it fitted.
     pub(super) fn done(self) -> Option<&'a [u8]> {
         let Self { buffer, len, fits } = self;
         let buffer: &'a [u8] = buffer;
@@ -104,7 +105,7 @@ impl<'a> Packer<'a> {
     }
 }
 
-/// Reads a message; `None` wherever it is too short or says what cannot be.
+/// Reads a message; returns `None` if it is too short or contains an impossible value.
 pub(super) struct Unpacker<'a> {
     rest: &'a [u8],
 }
@@ -164,7 +165,7 @@ impl<'a> Unpacker<'a> {
             squares += coords[at] * coords[at];
         }
         coords[largest] = f64::max(1.0 - squares, 0.0).sqrt();
-        // Of three components that are no larger than the fourth, the squares add up to three quarters.
+        // If three components are not larger than the fourth, their squares add up to at most three quarters.
         (squares <= 0.751).then(|| UnitQuaternion::new_normalize(Quaternion::from(coords)))
     }
 }

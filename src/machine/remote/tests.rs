@@ -64,7 +64,7 @@ fn messages_arrive_as_they_were_sent() {
     let mut got = FollowerMessage::unpack(bytes).unwrap();
     let [Some(now), Some(then)] = [got.sides[0], sent.sides[0]] else { panic!() };
     assert!(turned_rad(now.world_from_jaws, then.world_from_jaws) < 1e-5);
-    // The quaternion is the same turn, not the same numbers.
+    // The quaternion is the same rotation, but not the same numbers.
     got.sides[0] = Some(FollowerSide { world_from_jaws: then.world_from_jaws, tip_m: then.tip_m, ..now });
     got.sides[1] = got.sides[1].map(|side| FollowerSide { tip_m: then.tip_m, ..side });
     assert_eq!(got, sent);
@@ -105,7 +105,7 @@ fn a_message_that_does_not_fit_is_none() {
     assert_eq!(SIDES, 2);
 }
 
-/// Whatever comes is a message of finite numbers or none.
+/// Any input is either a message of finite numbers or refused.
 fn take(bytes: &[u8]) {
     if let Some(message) = LeaderMessage::unpack(bytes) {
         assert!(message.t_s.is_finite() && message.sides.iter().flatten().all(|side| side.tip_m.norm().is_finite()));
@@ -120,7 +120,7 @@ fn take(bytes: &[u8]) {
     }
 }
 
-/// Random bytes, and messages of which some bytes were changed.
+/// Random bytes, and messages with some changed bytes.
 fn fuzz(rounds: usize, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut buffer = [0; MESSAGE_MAX];

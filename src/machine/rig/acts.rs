@@ -1,17 +1,17 @@
-//! What the operator does in a training task besides moving the instrument.
+//! The operator's acts in a training task, apart from moving the instrument.
 
-/// One such act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
-    /// The trial begins anew: what was done before is forgotten.
+    /// The trial restarts: earlier acts are discarded.
     Begin,
-    /// The place under the tip is marked, as one under which a lump lies.
+    /// The point under the tip is marked as containing a lump.
     Mark,
-    /// The operator has done what was to be done.
+    /// The operator has completed the task.
     End,
 }
 
-/// How often each was done. A simulation carries out what a count has moved on by, so that nothing is done twice.
+/// Number of times that each act was performed. A simulation carries out each increase of a count, so that no act is
+/// repeated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Acts {
     pub begins: u8,
@@ -20,15 +20,12 @@ pub struct Acts {
 }
 
 impl Act {
-    /// All.
     pub const ALL: [Self; 3] = [Self::Begin, Self::Mark, Self::End];
 }
 
 impl Acts {
-    /// Nothing was done.
     pub const NONE: Self = Self { begins: 0, marks: 0, ends: 0 };
 
-    /// One more.
     pub const fn note(&mut self, act: Act) {
         let count = match act {
             Act::Begin => &mut self.begins,
@@ -38,7 +35,6 @@ impl Acts {
         *count = count.wrapping_add(1);
     }
 
-    /// How often this was done.
     pub const fn of(&self, act: Act) -> u8 {
         match act {
             Act::Begin => self.begins,
@@ -47,7 +43,6 @@ impl Acts {
         }
     }
 
-    /// What was done here or there.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self {
@@ -57,7 +52,7 @@ impl Acts {
         }
     }
 
-    /// How often an act was done since `before`. A count that went back was begun anew, and nothing was done.
+    /// Returns the number of times of an act since `before`. A count that decreased was restarted, and gives zero.
     pub const fn since(&self, before: &Self, act: Act) -> u8 {
         let more = self.of(act).wrapping_sub(before.of(act));
         if more > u8::MAX / 2 { 0 } else { more }

@@ -19,15 +19,14 @@ use crate::rig::{Inputs, Outputs, Roster, Side, View};
 
 pub use measured::{Delivering, Measured};
 
-/// Readings of the devices that both sides share.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shared {
     pub(super) tissue_n: Option<Vector3<f64>>,
-    /// The marker on this side's instrument in the camera's frame.
+    /// The marker on this side's instrument, in the camera's frame.
     pub(super) c_from_m: Option<Isometry3<f64>>,
     /// Orientation of the endoscope in the camera's frame: `c_from_view`.
     pub(super) c_from_view: View,
-    /// The endoscope's marker in the camera's frame.
+    /// The endoscope's marker, in the camera's frame.
     pub(super) c_from_n: Option<Isometry3<f64>>,
 }
 
@@ -41,27 +40,25 @@ fn rigid(pose: &IsometryMatrix3<f64>) -> Isometry3<f64> {
     Isometry3::from_parts(pose.translation, UnitQuaternion::from_rotation_matrix(&pose.rotation))
 }
 
-/// The arm and its sensor.
 #[derive(Debug)]
 struct FollowerSlots {
     arm: Slot<Box<dyn Follower>>,
     sensor: Slot<Box<dyn ForceSensor>>,
 }
 
-/// The devices of one side.
 #[derive(Debug)]
 pub struct ArmPair {
     levers: [Lever; 2],
-    /// `None` where the handle is at another machine.
+    /// `None` if the handle is at another machine.
     handle: Option<Slot<Box<dyn Leader>>>,
-    /// `None` where arm and sensor are at another machine.
+    /// `None` if arm and sensor are at another machine.
     follower: Option<FollowerSlots>,
     servos: Option<(Slot<dynamixel::Driver>, JawsControl)>,
     servos_known: ServosKnown,
     measured: Measured,
-    /// What handle, arm, sensor and servos have delivered since this was last handed over.
+    /// Deliveries of handle, arm, sensor and servos since the last [`ArmPair::take_gauges`].
     gauges: [Gauge; 4],
-    /// Orientation in which the handle was first read.
+    /// Orientation of the handle at its first reading.
     held_from: Option<UnitQuaternion<f64>>,
     period_s: f64,
     inverse: Option<Inverse>,
@@ -112,7 +109,6 @@ impl ArmPair {
         })
     }
 
-    /// Reads what the devices have sent.
     pub(super) fn poll(&mut self, now_s: f64) {
         let [of_handle, of_arm, of_sensor, of_servos] = &mut self.gauges;
         if let Some(reading) = self.handle.as_mut().and_then(|slot| slot.poll(now_s)) {
@@ -155,7 +151,7 @@ impl ArmPair {
         }
     }
 
-    /// The measurements; `None` unless every device of the force path delivers and none of its readings is too old.
+    /// Returns the measurements; `None` unless every device of the force path delivers data and no reading is too old.
     pub(in crate::rig) fn inputs(&self, now_s: f64, shared: &Shared) -> Option<Inputs> {
         let follower = self.follower.as_ref().map(|slots| is_there(&slots.arm) && is_there(&slots.sensor));
         let delivering = Delivering { handle: self.handle.as_ref().map(is_there), follower };
@@ -163,7 +159,8 @@ impl ArmPair {
         self.measured.with(now_s, delivering, jaws, shared)
     }
 
-    /// What arm and marker show while the drives are off; `c_from_m` is the marker as the tracker sees it.
+    /// Returns the poses of arm and marker while the drives are off; `c_from_m` is the marker as measured by the
+    /// tracker.
     pub(super) fn shown(&self, c_from_m: Option<Isometry3<f64>>) -> Option<Shown> {
         let Measured { mount, rcm, hand_eye, .. } = self.measured;
         let joints = Joints::from(self.measured.joints.filter(|_| !self.driven)?.value.joint_rad);
@@ -171,23 +168,22 @@ impl ArmPair {
         Some(Shown { mount, rcm, joints, base_from_s1, hand_eye, c_from_m })
     }
 
-    /// Nothing else objects, but this has not told its side yet.
+    /// Records that a device has not reported its side yet, if there is no other obstacle.
     pub(super) fn wait_for(&mut self, awaited: Awaited) {
         self.measured.obstacle.get_or_insert(Obstacle::Waiting(awaited));
     }
 
-    /// Right and left are exchanged: that comes before any other reason.
+    /// Records that right and left are swapped, which takes precedence over any other reason.
     pub(super) const fn object(&mut self, obstacle: Obstacle) {
         self.measured.obstacle = Some(obstacle);
     }
 
-    /// Sends the loop's commands to the devices.
     pub(super) fn write(&mut self, now_s: f64, outputs: &Outputs) {
         if outputs.drives != self.driven {
             self.driven = outputs.drives;
             self.switch_drives(outputs.drives);
         }
-        // Also while the drives are off, when it is zero: the handle keeps step with the loop.
+        // Also while the drives are off, when it is zero: this keeps the handle in step with the loop.
         if let Some(handle) = self.handle.as_mut().and_then(Slot::device) {
             let (hand_n, gripper_n) =
                 if outputs.drives { (outputs.hand_force_n, outputs.gripper_n) } else { (Vector3::zeros(), 0.0) };
@@ -215,7 +211,8 @@ impl ArmPair {
         }
     }
 
-    /// One step of the joints: towards the tip's target, or, without a target, braking along a path through the trocar.
+    /// Plans one step of the joints: towards the tip's target or, without a target, braking along a path through the
+    /// trocar.
     fn lead(&mut self, tip_command_m: Option<Vector3<f64>>) {
         let arm = self.follower.as_mut().and_then(|slots| slots.arm.device());
         let (Some(arm), Some(joints)) = (arm, self.measured.joints) else {
@@ -274,17 +271,17 @@ impl ArmPair {
         }
     }
 
-    /// Levers of the handle and of the arm.
+    /// Returns the levers of the handle and of the arm.
     pub(super) const fn levers(&self) -> &[Lever; 2] {
         &self.levers
     }
 
-    /// Why the arm cannot be engaged from its present position.
+    /// Returns the reason why the arm cannot be engaged from its current position.
     pub(super) const fn obstacle(&self) -> Option<Obstacle> {
         self.measured.obstacle
     }
 
-    /// What the devices have delivered, in the order of the roster; begins anew.
+    /// Returns the deliveries of the devices, in the order of the roster, and resets them.
     pub(super) fn take_gauges(&mut self) -> [Option<Gauge>; 4] {
         let [handle, arm, sensor, servos] = std::mem::replace(&mut self.gauges, [Gauge::NONE; 4]);
         let [leads, follows] = [self.handle.is_some(), self.follower.is_some()];
@@ -296,7 +293,7 @@ impl ArmPair {
         ]
     }
 
-    /// Health of the devices in the order of the roster, and whether the force path needs each of them.
+    /// Returns the health of the devices in the order of the roster, and whether the force path needs each of them.
     pub(super) fn healths(&self) -> [Option<(&Health, bool)>; 4] {
         [
             self.handle.as_ref().map(|slot| (slot.health(), true)),

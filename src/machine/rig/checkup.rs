@@ -1,4 +1,4 @@
-//! The test of a device: what it delivered in about two seconds, and what is to be said about it.
+//! The test of a device: its deliveries in about two seconds, and the findings.
 
 use nalgebra::Vector3;
 use nima_core::frames::GRAVITY_M_S2;
@@ -6,57 +6,80 @@ use nima_core::frames::GRAVITY_M_S2;
 use super::{AGES, CHANNELS, Gauge, Gauges, Nominal, Part, PartKind, Spread};
 use crate::config::RigConfig;
 
-/// Blocks of 0.1 s in a test; the counters of the first one are where it begins.
+/// Number of 0.1 s blocks in a test; the counters of the first block are the starting values.
 pub const BLOCKS: usize = 21;
-/// The rate may differ from the nominal one by this share.
+/// Maximum deviation of the rate from the nominal one, as a fraction, because devices differ from their nominal rate by
+/// a clock's tolerance only, and a wrong setting differs by far more. Chosen.
 pub const RATE_OFF: f64 = 0.05;
-/// Share of the readings that may be lost.
+/// Maximum fraction of lost readings: ten of the 2000 readings at 1 kHz. Chosen.
 const LOST_MAX: f64 = 0.005;
-/// Share that may be damaged.
+/// Maximum fraction of damaged frames: one late call in 2 s on a busy computer is not a finding, because the device is
+/// in order.
 const DAMAGED_MAX: f64 = 0.001;
-/// A reading may be as old as this many periods of the device, and as this many ticks, s.
+/// Maximum age of a reading, in periods of the device and in ticks.
 const AGE_PERIODS: f64 = 2.0;
 const AGE_TICKS: f64 = 2.0;
-/// The same for a device without a rate of its own, s: half of what the loop accepts.
+/// Maximum age of a reading of a device without a nominal rate, s: half of the age that the loop accepts.
 const AGE_MAX_S: f64 = 0.010;
-/// An accelerometer at rest may be off by this much, m/s^2: three hundredths of gravity.
+/// Maximum deviation of an accelerometer at rest, m/s^2: 3 % of gravity.
 const GRAVITY_OFF_M_S2: f64 = 0.3;
-/// Share of a range from which its end is near.
+/// Fraction of a range above which its end is near, because a reading at the end itself is clipped and no longer true.
 const NEAR_END: f64 = 0.95;
-/// Share of the frames in which a marker is seen.
+/// Minimum fraction of the frames that contain a marker.
 const SEEN_MIN: f64 = 0.95;
 /// Channels of a force sensor's accelerometer.
 const ACCELERATION: std::ops::Range<usize> = 6..9;
 
-/// Something to look at, with a cause and a cure on the screen.
+/// A finding of a test; the screen shows its cause and remedy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
-    /// No reading came.
     Silent,
-    /// It was opened again during the test.
     Reopened,
-    /// Fewer or more readings than it should send.
-    Rate { hz: f64, nominal_hz: f64 },
-    /// Readings are missing.
-    Lost { count: u64 },
-    /// Frames were damaged.
-    Damaged { count: u64 },
-    /// Readings were refused for what they say.
-    Refused { count: u64 },
-    /// Readings come late or in bursts.
-    Late { p99_s: f64, most_s: f64 },
+    Rate {
+        hz: f64,
+        nominal_hz: f64,
+    },
+    Lost {
+        count: u64,
+    },
+    Damaged {
+        count: u64,
+    },
+    Refused {
+        count: u64,
+    },
+    /// Readings are late or arrive in bursts.
+    Late {
+        p99_s: f64,
+        most_s: f64,
+    },
     /// A force sensor repeats the same numbers.
     Frozen,
-    /// It did not rest: noise and gravity cannot be judged.
-    Moved { channel: usize },
-    /// More noise than such a device has.
-    Noisy { channel: usize, deviation: f64, most: f64 },
-    /// At rest the accelerometer does not measure gravity.
-    Gravity { size_m_s2: f64 },
+    /// The device did not rest: noise and gravity cannot be evaluated.
+    Moved {
+        channel: usize,
+    },
+    /// More noise than is usual for the device.
+    Noisy {
+        channel: usize,
+        deviation: f64,
+        most: f64,
+    },
+    /// At rest, the accelerometer does not measure gravity.
+    Gravity {
+        size_m_s2: f64,
+    },
     /// Close to the end of its range.
-    AtTheEnd { channel: usize, value: f64, range: [f64; 2] },
-    /// A marker is not seen, or not always.
-    Hidden { tool: usize, share: f64 },
+    AtTheEnd {
+        channel: usize,
+        value: f64,
+        range: [f64; 2],
+    },
+    /// A marker is not visible, or not always.
+    Hidden {
+        tool: usize,
+        share: f64,
+    },
 }
 
 /// One number of a device's readings during the test.
@@ -70,7 +93,7 @@ pub struct Measured {
     pub range: Option<[f64; 2]>,
 }
 
-/// A smaller change of this number of a reading is nothing that a person does on purpose: m, rad, N, Nm, m/s^2.
+/// Returns the smallest intentional change of this number: m, rad, N, Nm, m/s^2.
 pub const fn least(kind: PartKind, channel: usize) -> f64 {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => 3e-4,
@@ -84,44 +107,39 @@ pub const fn least(kind: PartKind, channel: usize) -> f64 {
     }
 }
 
-/// What a test has found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkup {
     pub part: Part,
-    /// Duration, s.
     pub took_s: f64,
     pub rate_hz: f64,
     pub nominal_hz: Option<f64>,
-    /// Each number that it delivered.
     pub measured: Vec<Measured>,
-    /// Age of the newest reading in a tick, s: median and 99th percentile; `None` if it was never heard.
+    /// Age of the newest reading in a tick, s: median and 99th percentile; `None` without any reading.
     pub age_s: Option<[f64; 2]>,
     pub lost: u64,
     pub damaged: u64,
     pub refused: u64,
-    /// Mean acceleration, m/s^2; of a sensor at rest it points upwards.
+    /// Mean acceleration, m/s^2; for a sensor at rest it points upwards.
     pub up_m_s2: Option<Vector3<f64>>,
-    /// What to look at; empty if all is fine.
+    /// The findings; empty if the device is in order.
     pub findings: Vec<Finding>,
 }
 
-/// What a test needs to know of a device.
+/// Properties of a device that its test needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     pub part: Part,
-    /// Place in the roster.
     pub place: usize,
     pub nominal: Nominal,
-    /// Period of the loop, s.
     pub period_s: f64,
     /// Number of tools that a tracker follows.
     pub tools: usize,
-    /// What was delivered meanwhile, oldest first.
+    /// The deliveries during the test, oldest first.
     pub blocks: &'a [&'a Gauges],
 }
 
 impl<'a> Subject<'a> {
-    /// The part of this rig at this place of the roster; `None` if the rig has no devices.
+    /// Returns the properties of the part at this index of the roster; `None` if the rig has no devices.
     pub fn of(part: Part, place: usize, rig: &RigConfig, blocks: &'a [&'a Gauges]) -> Option<Self> {
         let devices = rig.devices.as_ref()?;
         let nominal = Nominal::of(part, devices, rig.rate_hz);
@@ -131,7 +149,7 @@ impl<'a> Subject<'a> {
 }
 
 impl Checkup {
-    /// The test of a device from these blocks, oldest first; `None` with fewer than two.
+    /// Tests a device from these blocks, oldest first; returns `None` with fewer than two blocks.
     pub fn of(subject: &Subject<'_>) -> Option<Self> {
         let (first, rest) = subject.blocks.split_first()?;
         let last = rest.last()?;
@@ -170,7 +188,7 @@ impl Checkup {
     }
 
     fn judge_delivery(&mut self, subject: &Subject<'_>, readings: u64, ticks: u64) {
-        // An arm answers once in a tick: what the loop missed is not its fault.
+        // An arm answers once per tick: ticks that the loop missed are not its fault.
         let most_hz = if subject.part.kind() == PartKind::Arm { ticks as f64 / self.took_s } else { f64::INFINITY };
         if let Some(nominal_hz) = self.nominal_hz
             && (self.rate_hz / nominal_hz.min(most_hz) - 1.0).abs() > RATE_OFF
@@ -214,7 +232,7 @@ impl Checkup {
             let reach = NEAR_END * (range[1] - range[0]) / 2.0;
             let middle = f64::midpoint(range[0], range[1]);
             let value = if high - middle > middle - low { high } else { low };
-            // A closed gripper is at the end of its range on purpose.
+            // A closed gripper is at the end of its range intentionally.
             let on_purpose = kind == PartKind::Handle && channel == 6;
             ((value - middle).abs() > reach && !on_purpose).then_some(Finding::AtTheEnd { channel, value, range })
         });
@@ -236,7 +254,7 @@ impl Checkup {
     }
 }
 
-/// The number of a reading that moved most during the test, if one did.
+/// Returns the number of a reading that moved most during the test, if one did.
 fn moved(kind: PartKind, gauges: &[&Gauge]) -> Option<usize> {
     let change = |channel: usize| {
         let mut means = Spread::NONE;
@@ -270,7 +288,7 @@ fn measured(channel: usize, gauges: &[&Gauge], nominal: &Nominal) -> Option<Meas
     Some(Measured { channel, noise, low, high, range: nominal.ranges[channel] })
 }
 
-/// Median and 99th percentile of the age, s; `None` if the device was never heard.
+/// Returns median and 99th percentile of the age, s; `None` without any reading.
 fn ages(gauges: &[&Gauge], period_s: f64) -> Option<[f64; 2]> {
     let counts: [u64; AGES] = std::array::from_fn(|age| gauges.iter().map(|gauge| u64::from(gauge.ages[age])).sum());
     let total: u64 = counts.iter().sum();
@@ -286,8 +304,8 @@ fn ages(gauges: &[&Gauge], period_s: f64) -> Option<[f64; 2]> {
     (total > 0 && counts[AGES - 1] < total).then(|| [at(0.5), at(0.99)])
 }
 
-/// Most noise of a device in order, standard deviation; `None` where noise means nothing. Force sensors: what the
-/// calibrations are laid out for. The others: well above their resolution.
+/// Returns the maximum noise of a device in order, standard deviation; `None` if noise is meaningless. For force
+/// sensors: the noise for which the calibrations are designed. For the others: well above their resolution.
 const fn noise_max(kind: PartKind, channel: usize) -> Option<f64> {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => Some(1e-4),

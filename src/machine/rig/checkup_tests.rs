@@ -1,9 +1,9 @@
-//! Every finding is made where it belongs, and a device in order has none.
+//! Every flaw produces its finding, and a device in order produces none.
 
 use super::{AGES, DEVICES_MAX, Gauge, Gauges, Part, Side, checkup::*};
 use crate::config::RigConfig;
 
-/// A reading of a sensor at rest, tilted; `even` is from -1 to 1.
+/// Returns a reading of a tilted sensor at rest; `even` is from -1 to 1.
 fn at_rest(channel: usize, even: f64) -> f64 {
     match channel {
         0..=2 => 1.0 + 0.05 * even,
@@ -70,7 +70,7 @@ fn a_sensor_in_order_is_fine_and_its_figures_are_right() {
     assert!((checkup.rate_hz - 1000.0).abs() < 1.0 && (checkup.took_s - 2.0).abs() < 1e-9);
     assert_eq!(checkup.age_s, Some([0.0, 1e-3]));
     assert_eq!(checkup.measured.len(), 9);
-    // An even spread over +-0.05 N.
+    // A uniform spread over +-0.05 N.
     let force = checkup.measured[0];
     assert!((force.noise - 0.05 / 3.0_f64.sqrt()).abs() < 2e-3, "{force:?}");
     assert!(force.low > 0.949 && force.high < 1.051 && force.range.is_none());
@@ -109,7 +109,7 @@ fn what_is_wrong_with_the_readings_is_found() {
     assert_eq!(valued(|channel, _, _| at_rest(channel, 0.0)), [Finding::Frozen]);
     let halved = valued(|channel, even, _| at_rest(channel, even) * if channel > 5 { 0.5 } else { 1.0 });
     assert!(matches!(halved[..], [Finding::Gravity { size_m_s2 }] if (size_m_s2 - 4.9).abs() < 0.1), "{halved:?}");
-    // While it is pushed, its noise is not judged.
+    // While it is pushed, its noise is not evaluated.
     let pushed = valued(|channel, even, t_s| at_rest(channel, 9.0 * even) + if channel == 2 { 3.0 * t_s } else { 0.0 });
     assert_eq!(pushed, [Finding::Moved { channel: 2 }]);
 }

@@ -35,18 +35,18 @@ pub struct DeviceRig {
     tracker: Option<Slot<Box<dyn Tracker>>>,
     endoscope: Option<EndoscopeSettings>,
     tracked: Option<Stamped<TrackerReading>>,
-    /// Both instruments' markers have been compared with where they should be.
+    /// The markers of both instruments have been compared with their expected poses.
     has_seen_markers: bool,
     pedal: Option<Pedal>,
     watch: Watch,
-    /// What tissue sensor, tracker and pedal have delivered since this was last handed over, and since when, s.
+    /// Deliveries of tissue sensor, tracker and pedal since the last [`Rig::gauges`], and the start of that time, s.
     gauges: [Gauge; 3],
     gauged_s: f64,
     period_s: f64,
 }
 
 impl Drop for DeviceRig {
-    /// All devices are closed at once: while one arm brakes, the other one must be served too.
+    /// Closes all devices together: while one arm brakes, the other one must be served too.
     fn drop(&mut self) {
         self.pairs.iter_mut().flatten().for_each(|pair| pair.retire());
         self.tissue.iter_mut().for_each(Slot::retire);
@@ -67,41 +67,26 @@ impl std::fmt::Debug for Pedal {
     }
 }
 
-/// Why the devices of a rig cannot be set up.
+/// Reason why the devices of a rig cannot be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum RigError {
-    /// The operating system could not create a thread.
-    #[error("no thread can be started for a device")]
+    #[error("cannot start a thread for a device")]
     Thread(#[from] io::Error),
-    /// A setting of a device is invalid.
     #[error("rig file, {device}: {trouble}")]
     Setting {
-        /// Name of the device.
         device: String,
-        /// What is wrong with the setting.
+        /// The fault of the setting.
         trouble: Trouble,
     },
-    /// The mounting of an arm is invalid.
     #[error("rig file, {side} mount")]
-    Mount {
-        /// Side of the arm.
-        side: &'static str,
-        /// What is wrong with it.
-        source: nima_core::kinematics::ArmError,
-    },
-    /// The trocar (RCM) is invalid.
+    Mount { side: &'static str, source: nima_core::kinematics::ArmError },
     #[error("rig file, {side} rcm")]
-    Rcm {
-        /// Side of the arm.
-        side: &'static str,
-        /// What is wrong with it.
-        source: nima_core::kinematics::RcmError,
-    },
+    Rcm { side: &'static str, source: nima_core::kinematics::RcmError },
 }
 
 impl DeviceRig {
-    /// Starts opening every device of these settings, for a loop of this period (s). `at_wrist` says for each side
-    /// whether its force sensor is at the wrist.
+    /// Starts opening every device of these settings, for a loop of this period (s). `at_wrist`: whether the force
+    /// sensor of each side is at the wrist.
     ///
     /// # Errors
     /// [`RigError`] if a setting is invalid or a thread cannot be created.
@@ -181,14 +166,14 @@ impl DeviceRig {
         let Some(pedal) = &mut self.pedal else { return Switches::default() };
         let reading = pedal.slot.poll(now_s);
         let pressed = pedal.held.update(reading, pedal.slot.health());
-        // It sends on a change only: its state in every tick is what can be seen.
+        // The pedal sends only changes: record its state in every tick.
         of_pedal.pedal(pressed);
         of_pedal.tick(pedal.slot.health(), now_s, self.period_s);
-        // A pedal that is not connected must not report that somebody is present.
+        // A disconnected pedal must not report the presence of a hand.
         Switches { clutch: pedal.roles.clutch(pressed), presence: pedal.roles.presence(pressed) }
     }
 
-    /// Readings of the shared devices, as this side uses them.
+    /// Returns readings of the shared devices for this side.
     fn shared(&self, side: Side, now_s: f64) -> Shared {
         /// The tracker sends 60 frames a second; allow six frames.
         const TRACKED_S: f64 = 0.1;
@@ -209,7 +194,7 @@ impl DeviceRig {
         Shared { tissue_n, c_from_m: c_from(side.index()), c_from_view, c_from_n }
     }
 
-    /// Compares each arm, while its drives are off, with the other one's settings.
+    /// Compares each arm, while its drives are off, with the other arm's settings to detect swapped devices.
     fn look_for_exchanges(&mut self, shared: &[Shared; SIDES]) {
         let [Some(right), Some(left)] = &mut self.pairs else { return };
         let [of_right, of_left] = shared.each_ref().map(|shared| shared.c_from_m);
@@ -315,7 +300,7 @@ impl Rig for DeviceRig {
     }
 }
 
-/// Each side is told the other's poses: they tell an exchanged arm or marker.
+/// Adds the other side's poses to each side, because they reveal a swapped arm or marker.
 fn join_sides(inputs: &mut [Option<Inputs>; SIDES]) {
     let frames = inputs.map(|inputs| inputs.map(|inputs| inputs.frames));
     for side in Side::ALL {
@@ -332,7 +317,6 @@ pub(super) fn enrol<D: Device + 'static>(roster: &mut Roster, part: Part, driver
     roster.push(RosterEntry::of(part, driver, slot.view()));
 }
 
-/// Whether the device delivers now.
 pub(super) fn is_there<D: Device + 'static>(slot: &Slot<D>) -> bool {
     slot.health().standing == Standing::Connected
 }

@@ -1,4 +1,4 @@
-//! Flaws of real devices, which the emulated ones have where a rig file asks for them.
+//! Flaws of real devices that emulated devices show on request of a rig file.
 
 use nima_devices::Trouble;
 use serde::{Deserialize, Serialize};
@@ -9,25 +9,26 @@ use serde::{Deserialize, Serialize};
 pub struct Flaws {
     /// The bias of the wrist sensors drifts with their temperature, N per minute along each axis.
     pub drift_n_per_min: f64,
-    /// The cables of the instrument pull at the wrist sensor, N at most, by how its last joint is turned.
+    /// The cables of the instrument pull at the wrist sensor by at most this force, N, depending on the angle of its
+    /// last joint.
     pub cable_n: f64,
-    /// The accelerometers are turned by this much more than the scene says, degrees.
+    /// Additional rotation of the accelerometers relative to the scene, degrees.
     pub imu_askew_deg: f64,
-    /// The tracker tells where a marker was this long ago, s.
+    /// Delay of the marker poses from the tracker, s.
     pub tracker_late_s: f64,
-    /// Share of the time in which the tracker does not see the markers on the instruments.
+    /// Fraction of the time in which the tracker does not detect the instruments' markers.
     pub tracker_missing: f64,
     /// Play between each joint and its encoder, degrees.
     pub backlash_deg: f64,
-    /// The shaft gives way across itself, m per N at the tip.
+    /// Lateral compliance of the shaft, m per N at the tip.
     pub bend_m_per_n: f64,
 }
 
 impl Flaws {
-    /// Checks every value; none may differ from zero on a rig of real devices.
+    /// Checks every value; on a rig of real devices all must be zero.
     ///
     /// # Errors
-    /// [`Trouble::Setting`] for the first that is out of its range.
+    /// [`Trouble::Setting`] for the first value out of its range.
     pub(super) fn check(&self, emulated: bool) -> Result<(), Trouble> {
         let ranges = [
             ("drift_n_per_min", self.drift_n_per_min, 10.0),

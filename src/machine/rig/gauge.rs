@@ -1,7 +1,7 @@
-//! What each device has delivered in a short time: its readings summed up in constant memory, for the screen.
+//! Deliveries of each device in a short time: its readings summed up in constant memory, for the screen.
 //!
-//! The loop adds every reading and, in every tick, the age of the newest one; ten times a second it hands the sums over
-//! and begins anew. Nothing here allocates. The screen joins blocks to the time that it needs.
+//! The loop adds every reading and, in every tick, the age of the newest one; ten times per second it passes on the
+//! sums and resets them. Nothing here allocates. The screen joins blocks to the duration that it needs.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_devices::{
@@ -11,9 +11,9 @@ use nima_devices::{
 
 use super::DEVICES_MAX;
 
-/// Most numbers of a reading that are summed up: three for each of a tracker's tools.
+/// Maximum number of values of a reading that are summed up: three for each of a tracker's tools.
 pub const CHANNELS: usize = 3 * TRACKED_TOOLS;
-/// Ages that are told apart, in periods of the loop; the last one includes everything older.
+/// Number of ages that are distinguished, in periods of the loop; the last one includes everything older.
 pub const AGES: usize = 48;
 
 /// Count, mean, spread and range of one number.
@@ -28,17 +28,15 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of nothing.
     pub const NONE: Self = Self { count: 0, mean: 0.0, squares: 0.0, low: f64::INFINITY, high: f64::NEG_INFINITY };
 
-    /// Adds a value; one that is not finite is left out.
+    /// Adds a value; a non-finite value is ignored.
     pub fn add(&mut self, value: f64) {
         if value.is_finite() {
             self.join(&Self { count: 1, mean: value, squares: 0.0, low: value, high: value });
         }
     }
 
-    /// Adds the values of another one.
     pub fn join(&mut self, other: &Self) {
         let count = self.count + other.count;
         if other.count == 0 {
@@ -53,42 +51,40 @@ impl Spread {
         self.count = count;
     }
 
-    /// Standard deviation; zero with fewer than two values.
+    /// Returns the standard deviation; zero with fewer than two values.
     pub fn deviation(&self) -> f64 {
         if self.count < 2 { 0.0 } else { (self.squares / f64::from(self.count - 1)).sqrt() }
     }
 
-    /// Distance between the highest and the lowest value; zero without values.
+    /// Returns the distance between the highest and the lowest value; zero without values.
     pub fn extent(&self) -> f64 {
         (self.high - self.low).max(0.0)
     }
 }
 
-/// What one device has delivered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauge {
     /// The numbers of its readings:
     ///
-    /// - handle: position (m), rotation since it was first read (rad), opening of the gripper (rad), buttons;
+    /// - handle: position (m), rotation since its first reading (rad), opening of the gripper (rad), buttons;
     /// - arm: joint angles (rad); servos: angles (rad);
     /// - force sensor: force (N), torque (Nm), acceleration (m/s^2);
-    /// - tracker: position of each tool in the camera's frame (m), as often as it is seen;
+    /// - tracker: position of each tool in the camera's frame (m), whenever it is visible;
     /// - pedal: its switches as one number.
     pub channels: [Spread; CHANNELS],
     /// Ticks by the age of the newest reading, in periods of the loop.
     pub ages: [u16; AGES],
-    /// Readings accepted, since the device was opened.
+    /// Number of accepted readings since the device was opened.
     pub readings: u64,
-    /// Readings that never arrived, since the device was opened.
+    /// Number of readings that never arrived, since the device was opened.
     pub lost: u64,
-    /// Frames refused for their checksum or structure, since the device was opened.
+    /// Number of frames refused for their checksum or structure, since the device was opened.
     pub damaged: u64,
-    /// Readings refused for their status or numbers, since the device was opened.
+    /// Number of readings refused for their status or numbers, since the device was opened.
     pub refused: u64,
 }
 
 impl Gauge {
-    /// Of a device that has delivered nothing.
     pub const NONE: Self =
         Self { channels: [Spread::NONE; CHANNELS], ages: [0; AGES], readings: 0, lost: 0, damaged: 0, refused: 0 };
 
@@ -96,30 +92,26 @@ impl Gauge {
         self.channels.iter_mut().zip(values).for_each(|(channel, value)| channel.add(value));
     }
 
-    /// Adds a reading of a handle; rotations are told from `from`.
+    /// Adds a reading of a handle; rotations are relative to `from`.
     pub fn handle(&mut self, reading: &HandleReading, from: &UnitQuaternion<f64>) {
         let turned = reading.orientation.map_or(NOWHERE, |now| (from.inverse() * now).scaled_axis());
         let rest = [reading.gripper_rad.unwrap_or(f64::NAN), f64::from(reading.buttons)];
         self.add(reading.position_m.iter().chain(&turned).copied().chain(rest));
     }
 
-    /// Adds a reading of an arm.
     pub fn arm(&mut self, reading: &ArmReading) {
         self.add(reading.joint_rad);
     }
 
-    /// Adds a reading of a force sensor.
     pub fn sensor(&mut self, reading: &ForceReading) {
         let acceleration = reading.acceleration_m_s2.unwrap_or(NOWHERE);
         self.add(reading.wrench.force_n.iter().chain(&reading.wrench.torque_nm).chain(&acceleration).copied());
     }
 
-    /// Adds a reading of servos.
     pub fn servos(&mut self, reading: &ServoReading) {
         self.add(reading.position_rad[..SERVOS].iter().copied());
     }
 
-    /// Adds a reading of a tracker.
     pub fn tracker(&mut self, reading: &TrackerReading) {
         for (tool, channels) in reading.tools.iter().zip(self.channels.chunks_exact_mut(3)) {
             if let Tracked::Seen { position_in_c_m, .. } = tool {
@@ -128,12 +120,11 @@ impl Gauge {
         }
     }
 
-    /// Adds a reading of a pedal.
     pub fn pedal(&mut self, reading: PedalReading) {
         self.add([f64::from(reading.pressed)]);
     }
 
-    /// Notes the age of the newest reading in this tick, and the device's counters.
+    /// Records the age of the newest reading in this tick, and the device's counters.
     pub fn tick(&mut self, health: &Health, now_s: f64, period_s: f64) {
         let age = (health.age_s(now_s) / period_s).round().clamp(0.0, (AGES - 1) as f64);
         self.ages[age as usize] = self.ages[age as usize].saturating_add(1);
@@ -145,15 +136,15 @@ impl Gauge {
     }
 }
 
-/// Numbers that a device does not have.
+/// Marks numbers that a device does not have.
 const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 
-/// What every device of a rig has delivered in a block of time.
+/// Deliveries of every device of a rig in a block of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gauges {
-    /// Begin of the block, s on the loop's clock.
+    /// Start of the block, s on the loop's clock.
     pub from_s: f64,
-    /// Its end.
+    /// End of the block, s on the loop's clock.
     pub to_s: f64,
     /// In the order of the roster.
     pub devices: [Gauge; DEVICES_MAX],

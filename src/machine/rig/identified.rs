@@ -1,38 +1,32 @@
-//! The force at the tip as the follower's machine tells it over a network.
+//! The force at the tip that the follower's machine sends over a network.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{ModeSet, Packed, SLOTS};
 
 use crate::messages::{FarStop, ForceSource};
 
-/// What was identified at the other machine from one sample.
+/// Result that the other machine identified from one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Identified {
-    /// When the command was given, on this machine's loop clock, that was in force at the sample, s. So no clock is compared with
-    /// another: all ages are differences on one.
+    /// Time at which the command was given that was active at the sample, s on this machine's loop clock. All ages are
+    /// therefore differences on one clock.
     pub t_s: f64,
-    /// From a command to the answer to it: both ways with their play-out, s.
+    /// Time from a command to its answer: both directions including their playout, s.
     pub delay_s: f64,
     /// Force at the tip, N, world frame.
     pub force_n: Vector3<f64>,
-    /// Where it comes from.
     pub source: ForceSource,
-    /// The sample was good.
     pub fresh: bool,
-    /// The identification rested.
     pub resting: bool,
-    /// The modes that are computed there.
     pub modes: ModeSet,
-    /// Parameters of one of them.
+    /// Parameters of one of these modes.
     pub packed: Packed,
-    /// Running mean of each mode's error at the horizon, N, where it is told.
+    /// Running mean of each mode's error at the prediction horizon, N, if the message contains it.
     pub errors_n: Option<[f32; SLOTS]>,
-    /// Why the other machine is stopped.
     pub stop: Option<FarStop>,
 }
 
 impl Identified {
-    /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
         self.t_s.is_finite() && self.delay_s.is_finite() && self.force_n.iter().all(|x| x.is_finite())
     }

@@ -16,8 +16,7 @@ pub struct JawsSettings {
     pub ratio: [f64; SERVOS],
     /// Opening of the jaws per opening of the gripper.
     pub grip_per_gripper: f64,
-    /// Force at the finger per current of the servo that closes the jaws, N/A; zero if there is no force feedback on
-    /// the gripper.
+    /// Force at the finger per current of the closing servo, N/A; zero without force feedback on the gripper.
     pub grip_n_per_a: f64,
     /// PID around each servo's built-in control, to remove the steady error due to load and backlash.
     pub pid: PidGains,
@@ -30,15 +29,14 @@ impl Default for JawsSettings {
     }
 }
 
-/// The controller of one instrument's servos.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JawsControl {
     settings: JawsSettings,
     pids: [Pid; SERVOS],
-    /// Last commanded orientation, as angles; keeps count of full turns.
+    /// Last commanded orientation, as angles; counts full turns.
     asked: Option<Jaws>,
     period_s: f64,
-    /// When the last goals were made, s.
+    /// Time of the last set points, s.
     last_s: Option<f64>,
 }
 
@@ -47,13 +45,13 @@ impl JawsControl {
         Self { settings, pids: [Pid::new(settings.pid); SERVOS], asked: None, period_s, last_s: None }
     }
 
-    /// Orientation of the jaws from the measured servo angles.
+    /// Returns the orientation of the jaws from the measured servo angles.
     pub(super) fn measured(&self, reading: &ServoReading) -> Jaws {
         let [roll_rad, pitch_rad, yaw_rad, _] = self.angles(reading);
         Jaws { roll_rad, pitch_rad, yaw_rad }
     }
 
-    /// Force that opens the jaws, N at the finger: the load on the closing servo.
+    /// Returns the force that opens the jaws, N at the finger: the load on the closing servo.
     pub(super) fn grip_n(&self, reading: &ServoReading) -> Option<f64> {
         let Self { settings: JawsSettings { grip_n_per_a, ratio, .. }, .. } = self;
         let closing_a = -reading.current_a[SERVOS - 1] * ratio[SERVOS - 1].signum();
@@ -64,7 +62,8 @@ impl JawsControl {
         std::array::from_fn(|i| reading.position_rad[i] / self.settings.ratio[i])
     }
 
-    /// Goal angles of the servos at this time (s), rad, for this orientation and this opening of the gripper (rad).
+    /// Returns the set points of the servos at this time (s), rad, for this orientation and this opening of the gripper
+    /// (rad).
     pub(super) fn goals(
         &mut self,
         now_s: f64,
@@ -72,7 +71,7 @@ impl JawsControl {
         gripper_rad: Option<f64>,
         reading: &ServoReading,
     ) -> [f64; SERVOS] {
-        // A tick right after a late one would make a large rate of one step of the reading.
+        // A tick right after a late one would turn one step of the reading into a large rate.
         let at_least_s = 0.5 * self.period_s;
         let dt_s = self.last_s.replace(now_s).map_or(self.period_s, |last_s| (now_s - last_s).max(at_least_s));
         let near = self.asked.unwrap_or_else(|| self.measured(reading));
@@ -87,7 +86,6 @@ impl JawsControl {
         })
     }
 
-    /// Forgets the last command.
     pub(super) fn reset(&mut self) {
         self.asked = None;
         self.last_s = None;

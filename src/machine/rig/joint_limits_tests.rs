@@ -1,4 +1,4 @@
-//! Sends fast commands through the inverse kinematics and the arm's driver, at several shares of the arm's maximum
+//! Sends fast commands through the inverse kinematics and the arm's driver, at several fractions of the arm's maximum
 //! speed.
 
 #[path = "../../core/kinematics/tests/usual_arm.rs"]
@@ -45,11 +45,10 @@ impl Hand {
     }
 }
 
-/// Results of one drive.
 #[derive(Default)]
 struct Shown {
     misses_mm: Vec<f64>,
-    /// Highest speed and acceleration of a joint as shares of their limits.
+    /// Highest speed and acceleration of a joint as fractions of their limits.
     speed: f64,
     acceleration: f64,
     /// Periods with a joint near the end of its range, and periods in which a joint changes direction.
@@ -61,7 +60,7 @@ struct Shown {
 
 /// Within a cone of 20 degrees no joint comes near its limits; at the edge of a cone of 50 degrees some do.
 ///
-/// Leads the arm as the rig does: a plan within the arm's limits, the driver's check, and now and then a clutch, which
+/// Controls the arm like the rig: a plan within the arm's limits, the driver's check, and occasionally a clutch, which
 /// brakes and starts a new plan.
 fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     let arm = arm();
@@ -73,7 +72,7 @@ fn drive(fraction: f64, cone_deg: f64, seed: u64, shown: &mut Shown) {
     for _ in 0..2000 {
         settled.step(&hand.target_m);
     }
-    // With the wide cone start near a joint limit, which a slow arm would not reach in the time of the test.
+    // With the wide cone, start near a joint limit, which a slow arm would not reach within the test.
     for _ in 0..5 * STEPS {
         if cone_deg < 45.0 || limit_margin_rad(settled.joint_rad()) < 0.03 {
             break;

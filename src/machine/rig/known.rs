@@ -1,5 +1,6 @@
-//! Which device belongs to which part, by the serial numbers that the rig file names and, where it names none, by those of the
-//! last passed ready check. A device that answers at the place of another part is not let in: it is told as exchanged with it.
+//! Assigns devices to parts by the serial numbers in the rig file and, without a number in the file, by those of the
+//! last passed ready check. A device that answers at the address of another part is refused and reported as swapped
+//! with that part.
 
 use std::sync::{
     Arc,
@@ -11,17 +12,14 @@ use nima_recording::store::ReadyRecord;
 
 use super::{Awaited, Exchange, Obstacle, Part, PartKind, SIDES, Settings, Side};
 
-/// The devices of a ready check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
-    /// When it was.
     date: String,
-    /// Who was where; parts whose device tells no serial number are left out.
+    /// Serial numbers of the parts; parts whose device reports no serial number are omitted.
     serials: Vec<(Part, String)>,
 }
 
 impl Checked {
-    /// What a record says of the parts.
     pub fn of(record: &ReadyRecord) -> Self {
         let part = |name: &str| Part::ALL.into_iter().find(|part| part.name() == name);
         let told = record.devices.iter().filter(|device| !device.serial.trim().is_empty());
@@ -30,24 +28,23 @@ impl Checked {
     }
 }
 
-/// Who is who on a rig.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {
     has_both_sides: bool,
-    /// By the rig file.
+    /// From the rig file.
     named: Vec<(Part, String)>,
     checked: Checked,
-    /// The servos of each side, for the real-time thread: force and motion do not need them, and must not begin while they are
-    /// the other side's.
+    /// The servos of each side, for the real-time thread: force and motion do not need them, but must not begin while
+    /// they belong to the other side.
     servos: [Arc<AtomicU8>; SIDES],
 }
 
-/// The servos have not been opened yet, are there or missing, or are those of the other side.
+/// The servos have not been opened yet; are connected or missing; or belong to the other side.
 const UNASKED: u8 = 0;
 const ASKED: u8 = 1;
 const EXCHANGED: u8 = 2;
 
-/// What the servos of a side object to an engagement.
+/// Objection of a side's servos to an engagement.
 #[derive(Clone, Debug)]
 pub(super) struct ServosKnown(Arc<AtomicU8>);
 
@@ -85,8 +82,8 @@ impl Known {
         self.has_both_sides
     }
 
-    /// Whose device it is that answers as this part with this serial number, if it is another part's: that part, and the
-    /// date of the ready check by which it is known.
+    /// Returns the other part to which a device belongs that answers as this part with this serial number, and the date
+    /// of the ready check from which this is known; `None` if it belongs to this part.
     fn whose(&self, part: Part, serial: &str) -> Option<(Part, Option<&str>)> {
         let is_it = |known: Option<&str>| known.is_some_and(|known| same_serial(known, serial));
         let others = || Part::ALL.into_iter().filter(|other| *other != part && other.kind() == part.kind());
@@ -104,8 +101,8 @@ impl Known {
         Some((other, Some(&self.checked.date)))
     }
 
-    /// Lets the device in that was opened as this part, unless it is another part's; names that part also if the driver has
-    /// refused the serial number.
+    /// Accepts the device that was opened as this part, unless it belongs to another part; reports that part also if
+    /// the driver has refused the serial number.
     pub(super) fn admit<D: Device>(&self, part: Part, opened: Result<D, Trouble>) -> Result<D, Trouble> {
         let admitted = self.identified(part, opened);
         if let Part::Servos(side) = part {
@@ -134,8 +131,9 @@ impl Known {
 }
 
 impl Settings {
-    /// Whether the file tells right from left for every device and marker in the path of force and motion: by serial numbers,
-    /// the hands of the handles, ids of servos, and the hand-eye calibration. With one arm there is nothing to exchange.
+    /// Returns whether the file distinguishes right from left for every device and marker in the path of force and
+    /// motion: by serial numbers, the hands of the handles, ids of servos, and the hand-eye calibration. With one arm
+    /// nothing can be swapped.
     pub(crate) fn tells_sides(&self) -> bool {
         let (Some(right), Some(left)) = (&self.right, &self.left) else { return true };
         let is_named = |kind: PartKind| {
@@ -147,7 +145,7 @@ impl Settings {
         hands && arms && markers && is_named(PartKind::Handle) && is_named(PartKind::Sensor)
     }
 
-    /// The serial number that the rig file names for a part; the ids of servos.
+    /// Returns the serial number of a part in the rig file, or the ids of servos.
     fn serial(&self, part: Part) -> Option<String> {
         let set = part.side().and_then(|side| self.arm(side));
         match part {
@@ -193,7 +191,7 @@ mod tests {
         assert_eq!(known.whose(SENSOR, "853"), None);
         assert_eq!(known.whose(SENSOR, "854"), Some((Part::Sensor(Side::Left), date)));
         assert_eq!(known.whose(SENSOR, "855"), Some((Part::TissueSensor, date)));
-        assert_eq!(known.whose(SENSOR, "856"), None, "a new sensor is nobody's");
+        assert_eq!(known.whose(SENSOR, "856"), None, "a new sensor belongs to no part");
         assert_eq!(known.whose(SENSOR, ""), None);
         assert_eq!(known.whose(Part::Arm(Side::Left), "KP-1"), Some((Part::Arm(Side::Right), date)));
         assert_eq!(known.whose(Part::Handle(Side::Left), "853"), None, "of another kind");

@@ -1,7 +1,7 @@
-//! The rig as the loop sees it, and its implementation with devices.
+//! The rig as an interface for the loop, and its implementation with devices.
 //!
-//! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample says so with
-//! `None`; it never repeats an old one as new.
+//! Positions in m, forces in N, both in the workspace frame (z up). A rig that cannot deliver a sample returns `None`;
+//! it never repeats an old sample as a new one.
 
 mod acts;
 mod arm_pair;
@@ -53,7 +53,7 @@ pub use seeking::{Offer, Sought, seek};
 pub use settings::{ArmSet, DeskSettings, EndoscopeSettings, Ends, SensorPlace, Settings};
 pub use watch::Watch;
 
-/// The force measurement, by the place of the sensor.
+/// The force measurement, by the location of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "made and used within one tick, where a box would be an allocation")]
 pub enum Sensed {
@@ -61,12 +61,12 @@ pub enum Sensed {
     AtTip(Vector3<f64>),
     /// At the wrist: includes weight, trocar friction and bias, which the calibrations remove.
     AtWrist(WristSample),
-    /// By the machine at the other end of a network, which identifies it there.
+    /// At the machine at the other end of a network, which identifies the force there.
     FarEnd(Identified),
 }
 
 impl Sensed {
-    /// The sample of a sensor at the wrist.
+    /// Returns the sample of a sensor at the wrist.
     pub const fn wrist(&self) -> Option<&WristSample> {
         match self {
             Self::AtWrist(sample) => Some(sample),
@@ -80,31 +80,30 @@ impl Sensed {
 pub struct Switches {
     /// The clutch is pressed: the hand moves without moving the tip.
     pub clutch: bool,
-    /// Whether somebody holds the handle; `None` if nothing on the rig detects it.
+    /// Whether a hand holds the handle; `None` if the rig cannot detect it.
     pub presence: Option<bool>,
 }
 
-/// Orientation of the endoscope; the hand's motion is mapped to the tip's in the frame of its picture.
+/// Orientation of the endoscope; the hand's motion is mapped to the tip's motion in the frame of its image.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
     /// Fixed, as given in the rig file.
     #[default]
     Fixed,
-    /// The rig has a tracker for it, which does not see it: the mapping is not known.
+    /// The rig's tracker does not detect the endoscope: the mapping is unknown.
     Unseen,
     /// `world_from_view`, measured by a tracker.
     Seen(UnitQuaternion<f64>),
-    /// The same where hand-eye calibrations tell where the tracker stands: so the place of the marker is known too.
+    /// Like `Seen`, with the position of the marker, because hand-eye calibrations give the tracker's pose.
     SeenAt {
-        /// How the picture is turned.
+        /// Orientation of the image.
         world_from_view: UnitQuaternion<f64>,
-        /// The endoscope's marker.
         world_from_n: Isometry3<f64>,
     },
 }
 
 impl View {
-    /// Orientation of the picture, where a tracker measures it.
+    /// Returns the orientation of the image, if a tracker measures it.
     pub const fn world_from_view(&self) -> Option<&UnitQuaternion<f64>> {
         match self {
             Self::Seen(world_from_view) | Self::SeenAt { world_from_view, .. } => Some(world_from_view),
@@ -112,7 +111,7 @@ impl View {
         }
     }
 
-    /// The endoscope's marker, where its place is known.
+    /// Returns the pose of the endoscope's marker, if it is known.
     pub const fn world_from_n(&self) -> Option<&Isometry3<f64>> {
         match self {
             Self::SeenAt { world_from_n, .. } => Some(world_from_n),
@@ -129,38 +128,35 @@ impl View {
 /// The measurements of an arm pair at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
-    /// The hand as measured by its device.
     pub hand: Hand,
     /// Opening of the gripper, rad, if the handle has one.
     pub gripper_rad: Option<f64>,
     /// Force that opens the jaws, N at the finger, if known.
     pub grip_n: Option<f64>,
-    /// Position of the instrument's tip, m.
     pub tip_m: Vector3<f64>,
     /// Orientation of the instrument's jaws, if known.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
-    /// The force measurement.
     pub sensed: Sensed,
-    /// Orientation of the endoscope.
     pub view: View,
-    /// What the frame calibrations are made of. Not checked by [`Inputs::is_finite`]: no force depends on it.
+    /// Input of the frame calibrations. Not checked by [`Inputs::is_finite`], because no force depends on it.
     pub frames: FrameSample,
     /// Clutch and presence.
     pub switches: Switches,
     /// The drives are on: the arm follows commands and the handle's motors are powered.
     pub powered: bool,
-    /// Why the arm cannot be engaged from its present position.
+    /// Reason why the arm cannot be engaged from its current position.
     pub obstacle: Option<Obstacle>,
-    /// Age of the oldest part, s: the devices sample at their own clocks. Zero in a simulation.
+    /// Age of the oldest part, s, because the devices sample on their own clocks. Zero in a simulation.
     pub age_s: f64,
-    /// Since something last came over the network that joins the two halves of the rig, s; zero for a rig in one place.
+    /// Time since the last message over the network that joins the two halves of the rig, s; zero for a rig in one
+    /// place.
     pub silent_s: f64,
-    /// The readings of the devices that all of it was made of.
+    /// The devices' readings from which all other fields were computed.
     pub raw: RawReadings,
 }
 
 impl Inputs {
-    /// Nothing measured: everything is at rest at the origin, without a force, and switched off.
+    /// No measurement: everything is at rest at the origin, without a force, and switched off.
     pub const NOTHING: Self = Self {
         hand: Hand::at(Vector3::new(0.0, 0.0, 0.0)),
         gripper_rad: None,
@@ -185,12 +181,11 @@ impl Inputs {
         raw: RawReadings::NONE,
     };
 
-    /// When the handle was read, s; `now_s` is the time of the tick (s).
+    /// Returns the time of the handle's reading, s; `now_s` is the time of the tick (s).
     pub fn hand_s(&self, now_s: f64) -> f64 {
         self.raw.handle.map_or(now_s - self.age_s, |reading| reading.arrival_s)
     }
 
-    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         let sensed = match &self.sensed {
             Sensed::AtTip(force_n) => force_n.iter().all(|x| x.is_finite()),
@@ -210,20 +205,19 @@ impl Inputs {
     }
 }
 
-/// Largest distance from the middle of the workspace to which the screen may lead a handle ([`Outputs::guide_m`]), on
+/// Maximum distance from the centre of the workspace to which the screen may guide a handle ([`Outputs::guide_m`]), on
 /// each axis, m.
 pub const GUIDE_MAX_M: f64 = 0.1;
-/// Furthest the screen may hold a gripper open ([`Outputs::grip_rad`]), rad.
+/// Maximum opening at which the screen may hold a gripper ([`Outputs::grip_rad`]), rad.
 pub const GRIP_MAX_RAD: f64 = 1.2;
 
-/// Commands of the loop to an arm pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
     /// Drives and motors may be on. If false, the arm brakes to rest and the handle has no force.
     pub drives: bool,
-    /// Commanded tip position, m; `None` holds the follower where it is.
+    /// Commanded tip position, m; `None` holds the follower at its position.
     pub tip_command_m: Option<Vector3<f64>>,
-    /// Commanded orientation of the jaws; `None` holds it.
+    /// Commanded orientation of the jaws; `None` holds the orientation.
     pub world_from_jaws: Option<UnitQuaternion<f64>>,
     /// Force on the hand, N, in the frame of its device, after all gates.
     pub hand_force_n: Vector3<f64>,
@@ -231,13 +225,13 @@ pub struct Outputs {
     pub gripper_n: f64,
     /// Instruction of the screen to the person at the arm.
     pub prompt: Prompt,
-    /// Position to which the person at the screen leads the handle with mouse or keyboard, m; `None` if nobody does.
+    /// Position to which the operator guides the handle with mouse or keyboard, m; `None` without guidance.
     pub guide_m: Option<Vector3<f64>>,
-    /// How far the person at the screen holds the gripper open, rad; `None` if nobody does.
+    /// Opening at which the operator holds the gripper from the screen, rad; `None` without.
     pub grip_rad: Option<f64>,
-    /// What the person at the screen did in a training task.
+    /// Acts of the operator in a training task.
     pub acts: Acts,
-    /// The simulated hand has let go of the handle.
+    /// The simulated hand has released the handle.
     pub lets_go: bool,
 }
 
@@ -259,7 +253,7 @@ impl Outputs {
 
 /// The hardware, or its simulation, of both sides. Owned by the real-time thread.
 pub trait Rig: Send {
-    /// Returns the newest measurements at loop time `now_s`; `None` for a side that has none.
+    /// Returns the newest measurements at loop time `now_s`; `None` for a side without measurements.
     ///
     /// Must not block and must not allocate.
     fn read(&mut self, now_s: f64) -> [Option<Inputs>; SIDES];
@@ -271,33 +265,35 @@ pub trait Rig: Send {
     /// Must not block and must not allocate.
     fn write(&mut self, now_s: f64, outputs: &[Outputs; SIDES]);
 
-    /// Hears what the pairs have to tell the machine at the other end of a network, once a tick, after [`Rig::write`]. A rig in
-    /// one place does nothing with it.
+    /// Receives the state of the pairs for the machine at the other end of a network, once per tick, after
+    /// [`Rig::write`]. A rig in one place ignores it.
     ///
     /// Must not block and must not allocate.
     fn hear(&mut self, _now_s: f64, _bulletins: &[Option<Bulletin<'_>>; SIDES]) {}
 
-    /// What the operator at the other end of a network has commanded; call until it returns `None`.
+    /// Returns the next command of the operator at the other end of a network; call until it returns `None`.
     fn command(&mut self) -> Option<Command> {
         None
     }
 
-    /// The next device that connected or was lost; call until it returns `None`. Rigs without devices have none.
+    /// Returns the next device that connected or was lost; call until it returns `None`. Rigs without devices have no
+    /// events.
     fn event(&mut self) -> Option<DeviceEvent> {
         None
     }
 
-    /// Levers that the supervisor may call when the loop no longer runs. Asked for once, before the loop starts.
+    /// Returns the levers that the supervisor may call when the loop no longer runs. Called once, before the loop
+    /// starts.
     fn levers(&self) -> Vec<Lever> {
         Vec::new()
     }
 
-    /// Health of the devices, in the order of the rig's [`Roster`].
+    /// Returns the health of the devices, in the order of the rig's [`Roster`].
     fn health(&self) -> Healths {
         Healths::default()
     }
 
-    /// What the devices have delivered since the last call, until now; `None` for a rig without devices.
+    /// Returns the deliveries of the devices since the last call; `None` for a rig without devices.
     ///
     /// Must not block and must not allocate.
     fn gauges(&mut self, _now_s: f64) -> Option<Gauges> {
@@ -305,7 +301,8 @@ pub trait Rig: Send {
     }
 }
 
-/// The methods of [`Rig`] that ask for its devices, in a rig around another one that has them: `devices_of!(self, self.local)`.
+/// The device methods of [`Rig`], forwarded by a rig to the inner rig that has the devices:
+/// `devices_of!(self, self.local)`.
 macro_rules! devices_of {
     ($self:ident, $rig:expr) => {
         fn event(&mut $self) -> Option<$crate::rig::DeviceEvent> {
@@ -347,64 +344,59 @@ impl<R: Rig + ?Sized> Rig for Box<R> {
     devices_of!(self, **self);
 }
 
-/// Most devices of a rig.
 pub const DEVICES_MAX: usize = 16;
 
-/// Health of every device of a rig.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Healths {
     /// In the order of the roster; entries beyond its end are `closed`.
     pub devices: [Health; DEVICES_MAX],
-    /// Why an arm that delivers cannot be engaged from its present position.
+    /// Reason why an arm that delivers data cannot be engaged from its current position.
     pub obstacles: [Option<Obstacle>; SIDES],
 }
 
-/// A device connected or was lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceEvent {
-    /// When this was noticed, s on the loop's clock.
+    /// Time of detection, s on the loop's clock.
     pub t_s: f64,
     /// Index into the roster.
     pub device: u8,
-    /// Its new state.
     pub standing: Standing,
-    /// The sides whose force path needs it.
+    /// Sides whose force path needs the device.
     pub of_side: [bool; SIDES],
 }
 
-/// One device of a rig, as threads other than the real-time thread see it.
+/// One device of a rig, for threads other than the real-time thread.
 #[derive(Clone, Debug)]
 pub struct RosterEntry {
-    /// What it is in the rig.
     pub role: DeviceRole,
     /// Name of its driver and address: `Bota socket 192.168.1.1`.
     pub driver: String,
-    /// Connects and disconnects it, and reports why it is not connected.
+    /// Connects and disconnects the device, and reports why it is not connected.
     pub view: SlotView,
-    /// What it is used for; `None` for a device that leads a simulated rig.
+    /// Part for which the device is used; `None` for a device that controls a simulated rig.
     pub part: Option<Part>,
-    /// Clears the faults of the device itself, if it has such a command; carried out the next time the device is
-    /// opened.
+    /// Clears the faults of the device itself, if it has such a command; carried out when the device is next opened.
     pub clear_faults: Option<ClearFaults>,
 }
 
 impl RosterEntry {
-    /// A device that is no part of the rig and that has no faults to clear.
+    /// Creates an entry for a device that is not a part of the rig and has no faults to clear.
     pub fn new(role: DeviceRole, driver: impl Into<String>, view: SlotView) -> Self {
         Self { role, driver: driver.into(), view, part: None, clear_faults: None }
     }
 
-    /// A part of the rig.
+    /// Creates an entry for a part of the rig.
     pub fn of(part: Part, driver: impl Into<String>, view: SlotView) -> Self {
         Self { part: Some(part), ..Self::new(DeviceRole::Part(part), driver, view) }
     }
 
-    /// Its name in files and in English text.
+    /// Returns the name in files and in English text.
     pub const fn name(&self) -> &'static str {
         self.role.name()
     }
 
-    /// The side of the arm that carries it, if it is a force sensor at an arm: calibrations are bound to it.
+    /// Returns the side of the arm that carries the device, if it is a force sensor at an arm: calibrations are bound
+    /// to it.
     pub const fn force_sensor_of(&self) -> Option<Side> {
         match self.part {
             Some(Part::Sensor(side)) => Some(side),
@@ -413,5 +405,4 @@ impl RosterEntry {
     }
 }
 
-/// The devices of a rig.
 pub type Roster = Vec<RosterEntry>;

@@ -1,4 +1,4 @@
-//! What a device should deliver, as far as it is known: the yardstick of its test.
+//! Expected deliveries of a device, as far as they are known: the reference for its test.
 
 use std::f64::consts::PI;
 
@@ -7,41 +7,39 @@ use nima_devices::dynamixel;
 
 use super::{Part, PartKind, SensorSettings, Settings, gauge::CHANNELS};
 
-/// Distance from the middle to which an omega.7 reaches at least, m (the manufacturer's figure for its workspace).
+/// Minimum reach of an omega.7 from the centre, m (the manufacturer's workspace).
 const HANDLE_REACH_M: f64 = 0.075;
-/// Greatest opening of its gripper, rad.
+/// Maximum opening of its gripper, rad (30 degrees, chai3d's device table).
 const GRIPPER_RAD: f64 = PI / 6.0;
 /// Channel of the gripper.
 const GRIPPER: usize = 6;
 
-/// What a device should deliver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nominal {
-    /// Rate of the readings, Hz; `None` for a device that is asked as often as its line allows, or sends only on a
-    /// change.
+    /// Rate of the readings, Hz; `None` for a device that is queried as often as its connection allows, or sends only
+    /// changes.
     pub rate_hz: Option<f64>,
-    /// Lowest and highest value of each number of a reading ([`super::Gauge::channels`]), where there is a limit.
+    /// Lowest and highest value of each number of a reading ([`super::Gauge::channels`]), if it has limits.
     pub ranges: [Option<[f64; 2]>; CHANNELS],
-    /// Whether it has an accelerometer.
     pub inertial: bool,
 }
 
 impl Nominal {
-    /// Of a part of a rig with these devices and a loop of this rate (Hz).
+    /// Returns the expected deliveries of a part of a rig with these devices and a loop of this rate (Hz).
     pub fn of(part: Part, devices: &Settings, loop_hz: f64) -> Self {
         let mut nominal = Self { rate_hz: None, ranges: [None; CHANNELS], inertial: false };
         let set = part.side().and_then(|side| devices.arm(side));
         match part {
             Part::Handle(_) => {
                 nominal.rate_hz = set.map(|set| set.handle.rate_hz().min(loop_hz));
-                // How far the handle of a lab reaches is not known.
+                // The reach of a user's handle is unknown.
                 if set.is_some_and(|set| set.handle.force_dimension().is_some()) {
                     nominal.ranges[..3].fill(Some([-HANDLE_REACH_M, HANDLE_REACH_M]));
                     nominal.ranges[GRIPPER] = Some([0.0, GRIPPER_RAD]);
                 }
             }
             Part::Arm(_) => {
-                // It is asked once in every tick.
+                // The device is queried once per tick.
                 nominal.rate_hz = Some(loop_hz);
                 let turning = LIMIT_RAD.map(|limit| limit.is_finite().then_some([-limit, limit]));
                 nominal.ranges[..turning.len()].copy_from_slice(&turning);
@@ -62,7 +60,7 @@ impl Nominal {
         nominal
     }
 
-    /// Whether it delivers all the time; silence is then a fault.
+    /// Returns whether the device delivers continuously; silence is then a fault.
     pub const fn is_steady(part: Part) -> bool {
         !matches!(part.kind(), PartKind::Pedal)
     }

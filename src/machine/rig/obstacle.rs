@@ -1,30 +1,29 @@
-//! Why an arm that delivers cannot be engaged from where it is, and what a rig's own geometry tells of right and left that are
-//! exchanged: the other arm's mount or trocar fits where its own does not, or the other one's marker.
+//! Reasons why an arm that delivers data cannot be engaged from its position, and detection of swapped sides by the
+//! rig's geometry: the other arm's mount, trocar or marker fits where its own does not.
 
 use nalgebra::Isometry3;
 use nima_core::kinematics::{Arm, Joints, Rcm, START_MISS_M, StartError};
 
-/// Why an arm that delivers cannot be engaged.
+/// Reason why an arm that delivers data cannot be engaged.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Obstacle {
-    /// The arm cannot start from its present position.
+    /// The arm cannot start from its current position.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// Something has not been heard of yet: nobody knows whether it is this side's.
+    /// A device has not reported yet, so it is unknown whether it belongs to this side.
     #[error("{}", .0.words())]
     Waiting(Awaited),
-    /// Right and left are exchanged.
     #[error("{}", .0.words())]
     Exchanged(Exchange),
     /// Something at the other end of a network, where the screen says what.
-    #[error("the follower's machine says that it cannot: its own screen names the reason")]
+    #[error("the follower's machine refuses to engage; its screen shows the reason")]
     FarEnd,
 }
 
-/// What must have told its side before an engagement, and does not belong to the path of force.
+/// A device outside the force path that must have reported its side before an engagement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Awaited {
-    /// The servos, until they are open or found missing.
+    /// The servos, until they are open or known to be missing.
     Servos,
     /// The markers by which the tracker joins hand and tip.
     Markers,
@@ -33,51 +32,47 @@ pub enum Awaited {
 impl Awaited {
     const fn words(self) -> &'static str {
         match self {
-            Self::Servos => "the servos have not answered yet",
+            Self::Servos => "the servos have not responded yet",
             Self::Markers => "the tracker has not seen the markers of both instruments yet",
         }
     }
 }
 
-/// What is exchanged between right and left.
+/// The devices that are swapped between right and left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exchange {
-    /// One handle moves when the other one is asked for.
+    /// The other handle moves than the requested one.
     Handles,
-    /// The arms, or how they are mounted.
+    /// The arms or their mounts.
     Arms,
-    /// The wrist sensors.
     Sensors,
-    /// The servos of the instruments.
     Servos,
-    /// The markers on the instruments.
     Markers,
-    /// The trocars.
     Trocars,
 }
 
 impl Exchange {
-    /// What is exchanged, a clause without a full stop.
+    /// Returns the swapped devices, as a clause without a full stop.
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Handles => "the right and the left handle are exchanged",
-            Self::Arms => "the right and the left arm, or their mounts in the rig file, are exchanged",
-            Self::Sensors => "the right and the left sensor are exchanged",
-            Self::Servos => "the servos of the right and the left instrument are exchanged",
-            Self::Markers => "the markers of the right and the left instrument are exchanged",
-            Self::Trocars => "the right and the left trocar are exchanged, or the instruments stand in each other's",
+            Self::Handles => "the right and left handles are swapped",
+            Self::Arms => "the right and left arms, or their mounts in the rig file, are swapped",
+            Self::Sensors => "the right and left sensors are swapped",
+            Self::Servos => "the servos of the right and left instruments are swapped",
+            Self::Markers => "the markers of the right and left instruments are swapped",
+            Self::Trocars => "the right and left trocars are swapped, or each instrument is in the other's trocar",
         }
     }
 }
 
-/// Where a marker should be, by the arm: from the hand-eye calibration.
+/// Expected pose of a marker relative to the arm, from the hand-eye calibration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HandEye {
     pub(super) s1_from_m: Isometry3<f64>,
     pub(super) base_from_c: Isometry3<f64>,
 }
 
-/// What an arm and its marker show now.
+/// Current pose of an arm and its marker.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shown {
     pub(super) mount: Arm,
@@ -88,18 +83,19 @@ pub(super) struct Shown {
     pub(super) c_from_m: Option<Isometry3<f64>>,
 }
 
-/// A marker is where it should be within this (m, rad), ...
+/// A marker is at its expected pose within this distance (m, rad).
 const NEAR: (f64, f64) = (0.020, 0.15);
-/// ... and surely not beyond this.
+/// A marker beyond this distance (m, rad) is certainly not at its expected pose.
 const FAR: (f64, f64) = (0.050, 0.35);
 
 impl Shown {
-    /// What is exchanged with the other arm, if its own settings contradict what it shows and those of the other one do not.
+    /// Returns the device that is swapped with the other arm's, if the current poses contradict the arm's own settings
+    /// and match the other arm's.
     pub(super) fn exchange(&self, other: &Self) -> Option<Exchange> {
         self.exchanged_place(other).or_else(|| self.exchanged_marker(other))
     }
 
-    /// Whether the marker can be compared with where it should be, and is seen.
+    /// Returns whether the marker has an expected pose and is visible.
     pub(super) const fn is_marked(&self) -> bool {
         self.hand_eye.is_none() || self.c_from_m.is_some()
     }

@@ -1,39 +1,32 @@
-//! The parts of a rig: what a device is used for, and where a rig file describes it.
+//! The parts of a rig: the uses of its devices, and their tables in a rig file.
 
 use std::fmt;
 
 use super::{SensorSettings, Settings, Side};
 
-/// What a device is used for in a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
-    /// The handle in this hand.
     Handle(Side),
-    /// The arm of this side.
     Arm(Side),
     /// The force sensor on the arm of this side: calibrations are bound to it.
     Sensor(Side),
-    /// The servos of the instrument of this side.
     Servos(Side),
-    /// The force sensor under the tissue.
     TissueSensor,
-    /// The optical tracker.
     Tracker,
-    /// The foot pedal.
     Pedal,
 }
 
-/// What a device is in its rig.
+/// Role of a device in its rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceRole {
-    /// A part of the rig; on a simulated rig, a device that leads it in place of this part.
+    /// A part of the rig; on a simulated rig, a device that replaces this part.
     Part(Part),
-    /// A cap that leads a simulated rig.
+    /// A cap that controls a simulated rig.
     Cap,
 }
 
 impl DeviceRole {
-    /// Its name in files and in English text: `left sensor`.
+    /// Returns the name in files and in English text: `left sensor`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Part(part) => part.name(),
@@ -42,12 +35,11 @@ impl DeviceRole {
     }
 }
 
-/// A device by its role and its make. Shown as `right handle (Force Dimension)`.
+/// A device by its role and its make. Displayed as `right handle (Force Dimension)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceName {
-    /// What it is.
     pub role: DeviceRole,
-    /// One of [`Part::makes`]; `None` for a device with one make only.
+    /// One of [`Part::makes`]; `None` if the role has only one make.
     pub make: Option<&'static str>,
 }
 
@@ -58,7 +50,7 @@ impl fmt::Display for DeviceName {
     }
 }
 
-/// Devices of one kind can take each other's places.
+/// Kind of part: devices of one kind can replace each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PartKind {
     Handle,
@@ -73,7 +65,7 @@ impl PartKind {
     /// Kinds of which each side has one.
     pub const OF_A_SIDE: [Self; 4] = [Self::Handle, Self::Arm, Self::Sensor, Self::Servos];
 
-    /// The part of this kind on a side; `None` for a kind that both sides share.
+    /// Returns the part of this kind on a side; `None` for a kind that both sides share.
     pub const fn of(self, side: Side) -> Option<Part> {
         match self {
             Self::Handle => Some(Part::Handle(side)),
@@ -101,7 +93,6 @@ impl Part {
         Self::Pedal,
     ];
 
-    /// Its kind.
     pub const fn kind(self) -> PartKind {
         match self {
             Self::Handle(_) => PartKind::Handle,
@@ -113,7 +104,6 @@ impl Part {
         }
     }
 
-    /// Its side; `None` for what both sides share.
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Handle(side) | Self::Arm(side) | Self::Sensor(side) | Self::Servos(side) => Some(side),
@@ -121,7 +111,7 @@ impl Part {
         }
     }
 
-    /// Its name on the screen and in messages: `right handle`.
+    /// Returns the name on the screen and in messages: `right handle`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Handle(Side::Right) => "right handle",
@@ -138,7 +128,7 @@ impl Part {
         }
     }
 
-    /// Makes of it that the program knows.
+    /// Returns the makes that the program supports.
     pub const fn makes(self) -> &'static [&'static str] {
         match self.kind() {
             PartKind::Handle => &["Force Dimension", "Haply", "external"],
@@ -150,12 +140,12 @@ impl Part {
         }
     }
 
-    /// The device of this part in a rig with these devices.
+    /// Returns the device of this part in a rig with these devices.
     pub(crate) fn device(self, devices: &Settings) -> DeviceName {
         DeviceName { role: DeviceRole::Part(self), make: self.make(devices) }
     }
 
-    /// Its make in a rig with these devices, one of [`Part::makes`].
+    /// Returns the make in a rig with these devices, one of [`Part::makes`].
     fn make(self, devices: &Settings) -> Option<&'static str> {
         let set = self.side().and_then(|side| devices.arm(side));
         let chosen = match self {
@@ -168,12 +158,12 @@ impl Part {
         chosen.or_else(|| self.makes().first().copied())
     }
 
-    /// Whether the rig has the usual make here, the one that is looked for by itself.
+    /// Returns whether the rig uses the default make here, which is searched for automatically.
     pub(super) fn has_usual_make(self, devices: &Settings) -> bool {
         self.make(devices) == self.makes().first().copied()
     }
 
-    /// Key of its table in a rig file.
+    /// Returns the key of the table in a rig file.
     pub const fn key(self) -> &'static str {
         match self {
             Self::Handle(Side::Right) => "devices.right.handle",
@@ -190,7 +180,7 @@ impl Part {
         }
     }
 
-    /// Whether a rig with these devices has it at this machine.
+    /// Returns whether a rig with these devices has the part at this machine.
     pub const fn is_in(self, devices: &Settings) -> bool {
         let is_here = match self {
             Self::Handle(_) | Self::Pedal => devices.ends.have_leader(),

@@ -1,4 +1,4 @@
-//! Diagnosis of the devices that a rig file names.
+//! Diagnosis of the devices in a rig file.
 
 use nima_devices::discovery::{
     Probe,
@@ -7,8 +7,8 @@ use nima_devices::discovery::{
 
 use super::{Settings, Side};
 
-/// A probe for every device, named as in the rig: `right handle`, `right arm`, `right sensor`, `right servos`, the same
-/// for the left side, `tissue sensor`, `tracker`, `pedal`.
+/// Returns a probe for every device, named as in the rig: `right handle`, `right arm`, `right sensor`, `right servos`,
+/// the same for the left side, `tissue sensor`, `tracker`, `pedal`.
 pub fn rig_probes(settings: &Settings) -> Vec<Box<dyn Probe>> {
     let mut probes = Vec::new();
     for side in Side::ALL {

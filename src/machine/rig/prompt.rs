@@ -3,16 +3,15 @@
 use nalgebra::{UnitQuaternion, UnitVector3};
 use nima_core::calibration::frames::Move;
 
-/// One instruction. On a real rig a person reads it from the screen and no machine moves; on a simulated one a
+/// One instruction. On a real rig a person reads it from the screen and no machine moves; on a simulated rig a
 /// simulated person follows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Prompt {
-    /// None: leave the instrument alone.
     #[default]
     Rest,
-    /// Turn the tool into this orientation, touch nothing, hold still.
+    /// Turn the tool to this orientation, touch nothing, hold still.
     Hold {
-        /// Wanted orientation of the wrist sensor.
+        /// Requested orientation of the wrist sensor.
         world_from_s1: UnitQuaternion<f64>,
     },
     /// Turn the tool slowly in all directions; touch nothing.
@@ -24,7 +23,7 @@ pub enum Prompt {
     },
     /// Work on the tissue: in and out through the trocar, sideways, in contact and free.
     Work,
-    /// The same without touching the tissue.
+    /// Like `Work`, without touching the tissue.
     WorkFree,
     /// Turn the tool about its tip, which stays in a dimple; hold each pose still.
     PivotInDimple,
@@ -34,17 +33,16 @@ pub enum Prompt {
     PivotInTrocar,
     /// Touch a point of the table with the tip, and hold still.
     Touch {
-        /// 0: the origin; 1: a point along x; 2: one on the side of y; from 3 on: anywhere else.
+        /// 0: the origin; 1: a point along x; 2: a point on the side of y; from 3 on: any other point.
         point: u8,
     },
-    /// Move the tip this way in the endoscope's picture, then hold still.
+    /// Move the tip in this direction of the endoscope image, then hold still.
     MoveTip(Move),
-    /// Move the handle this way in the endoscope's picture, then hold still.
+    /// Move the handle in this direction of the endoscope image, then hold still.
     MoveHandle(Move),
 }
 
 impl Prompt {
-    /// Whether every number in it is finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Hold { world_from_s1 } => world_from_s1.coords.iter().all(|x| x.is_finite()),

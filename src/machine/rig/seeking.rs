@@ -1,7 +1,7 @@
-//! Looks for devices that could become a part of a rig and that the rig does not use yet.
+//! Searches for devices that could become a part of a rig and that the rig does not use yet.
 //!
-//! Devices on USB are found by themselves; what is in a network is tried at an address that a person names. Each is
-//! asked for its identity by the driver of its kind. Not for the real-time thread: it opens devices and waits.
+//! USB devices are found automatically; network devices are tried at an address that the user names. The driver of its
+//! kind queries the identity of each device. Not for the real-time thread, because it opens devices and waits.
 
 use std::path::{Path, PathBuf};
 
@@ -14,27 +14,24 @@ use toml_edit::Value;
 
 use super::{Part, PartKind, Settings};
 
-/// A device that was found, and what a rig file has to say to use it.
+/// A device that was found, and the settings with which a rig file can use it.
 #[derive(Clone, Debug)]
 pub struct Offer {
     /// Port, address or name of the device.
     pub place: String,
-    /// Who it is.
     pub identity: Identity,
     /// Keys below the part's table, and their values.
     pub(crate) changes: Vec<(&'static str, Value)>,
 }
 
-/// One place where a device was looked for.
 #[derive(Clone, Debug)]
 pub struct Sought {
-    /// Port or address.
     pub place: String,
-    /// The device there, or why there is none.
+    /// The device there, or the reason why there is none.
     pub found: Result<Offer, Trouble>,
 }
 
-/// Where `nima` looks by itself: ports for what is on a line, USB for the rest.
+/// A location to try: ports for devices on a serial line, USB for the others.
 struct Trial {
     place: String,
     serial: Option<String>,
@@ -42,9 +39,9 @@ struct Trial {
     probe: Box<dyn Probe>,
 }
 
-/// Looks for devices for this part: at what is plugged in, and at `place` if a person named one.
+/// Searches for devices for this part: among the plugged devices, and at `place` if the user named one.
 pub fn seek(part: Part, devices: &Settings, plugged: &Plugged, place: &str) -> Vec<Sought> {
-    // An external device sends to the address of the rig file by itself, a simulated one is not plugged in.
+    // An external device sends to the address in the rig file by itself; a simulated device is not plugged in.
     if !part.has_usual_make(devices) {
         return Vec::new();
     }
@@ -77,7 +74,7 @@ fn told(
         Outcome::Trouble { trouble, .. } => Err(trouble),
         Outcome::Connected(found) => {
             let mut identity = found.identity;
-            // A bus has no serial number of its own; its adapter on USB has one.
+            // A bus has no serial number; its USB adapter has one.
             match serial {
                 Some(serial) => identity.serial = serial,
                 None => {
@@ -93,12 +90,12 @@ fn told(
     Sought { place, found }
 }
 
-/// Key of the serial number of a sensor or an arm; filled in when the device has told it.
+/// Key of the serial number of a sensor or an arm; filled in once the device has reported it.
 const SERIAL_NUMBER: &str = "serial_number";
 
-/// Serial ports that no part of the rig uses, and what a person named.
+/// Serial ports that no part of the rig uses, and the location that the user named.
 struct Ports {
-    /// Each with the serial number of its adapter on USB.
+    /// Each port with the serial number of its USB adapter.
     lines: Vec<(String, Option<String>)>,
     /// A network address.
     address: Option<String>,
@@ -134,13 +131,14 @@ fn same_file(one: &Path, other: &Path) -> bool {
     one == other || matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }
 
-/// The name of a port that holds its device's serial number and stays when devices are plugged in another order.
+/// Returns a port name that contains the device's serial number and stays valid when devices are plugged in a different
+/// order.
 fn lasting_name(port: &Path) -> PathBuf {
     let names = std::fs::read_dir("/dev/serial/by-id").into_iter().flatten().flatten().map(|entry| entry.path());
     names.into_iter().find(|name| same_file(name, port)).unwrap_or_else(|| port.to_owned())
 }
 
-/// Every handle that no program has open.
+/// Finds every handle that is not open in another program.
 fn handles(part: Part, devices: &Settings) -> Vec<Sought> {
     let place = "USB".to_owned();
     let now = part.side().and_then(|side| devices.arm(side)).and_then(|set| set.handle.force_dimension());
@@ -156,7 +154,7 @@ fn handles(part: Part, devices: &Settings) -> Vec<Sought> {
     }
 }
 
-/// Pedals are known by their ids: nothing needs to be opened.
+/// Finds pedals by their ids, without opening them.
 fn pedals(devices: &Settings, plugged: &Plugged) -> Vec<Sought> {
     let used = devices.pedal.as_ref().map(|pedal| pedal.source.clone());
     let mut sought: Vec<Sought> = Vec::new();
@@ -164,7 +162,7 @@ fn pedals(devices: &Settings, plugged: &Plugged) -> Vec<Sought> {
         let usb = &node.usb;
         let ids = format!("{:04x}:{:04x}", usb.vendor, usb.product);
         let place = if usb.serial.is_empty() { ids } else { format!("{ids}:{}", usb.serial) };
-        // One pedal has a node for each of its interfaces.
+        // A pedal has a node for each of its interfaces.
         if used.as_ref() == Some(&place) || sought.iter().any(|one| one.place == place) {
             continue;
         }
@@ -175,7 +173,7 @@ fn pedals(devices: &Settings, plugged: &Plugged) -> Vec<Sought> {
     sought
 }
 
-/// An arm at the address that a person named, else at the manufacturer's own.
+/// Tries the address that the user named, otherwise the manufacturer's default address.
 fn arms(part: Part, devices: &Settings, place: &str) -> Vec<Trial> {
     let now =
         part.side().and_then(|side| devices.arm(side)).and_then(|set| set.arm.kinova()).cloned().unwrap_or_default();
@@ -200,7 +198,7 @@ fn arms(part: Part, devices: &Settings, place: &str) -> Vec<Trial> {
     vec![Trial { place: place.to_owned(), serial: None, changes, probe: probes::arm(part.name(), settings) }]
 }
 
-/// A port that the system calls a modem is a sensor of the second generation; an adapter may carry either.
+/// A port that the system calls a modem is a sensor of the second generation; an adapter may carry either generation.
 fn sensors(ports: &Ports) -> Vec<Trial> {
     use bota::Transport::{Gen0, GenA, Socket};
     let trial = |place: &str, transport, name: &str| {
@@ -217,7 +215,7 @@ fn sensors(ports: &Ports) -> Vec<Trial> {
     ports.lines.iter().filter_map(on_line).chain(in_network).collect()
 }
 
-/// Servos are listed without being configured.
+/// Lists servos without configuring them.
 fn servos(part: Part, devices: &Settings, ports: &Ports) -> Vec<Trial> {
     let now = part.side().and_then(|side| devices.arm(side)).and_then(|set| set.servos.as_ref());
     let baud = now.map_or(dynamixel::table::BAUDS[0], |servos| servos.baud);
@@ -229,7 +227,7 @@ fn servos(part: Part, devices: &Settings, ports: &Ports) -> Vec<Trial> {
     ports.lines.iter().filter_map(trial).collect()
 }
 
-/// A tracker is opened with the tools of the rig.
+/// Opens a tracker with the tools of the rig.
 fn trackers(devices: &Settings, ports: &Ports) -> Vec<Trial> {
     let Some(now) = &devices.tracker else { return Vec::new() };
     let trial = |settings: ndi::Settings, key: &'static str, place: &str| {

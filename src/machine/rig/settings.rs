@@ -1,4 +1,4 @@
-//! The devices section of a rig file: which devices there are, their addresses, and how they are mounted.
+//! The devices section of a rig file: devices, addresses and mounting.
 
 use std::path::Path;
 
@@ -17,34 +17,31 @@ use crate::rig::{SIDES, Side};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// The devices are emulated on this computer, at the addresses given here, and the console starts the emulators
-    /// itself. Relative paths are within the user's [`runtime_folder`](nima_devices::own_folder::runtime_folder).
+    /// The devices are emulated on this computer, at the addresses given here, and the console starts the emulators.
+    /// Relative paths are within the user's [`runtime_folder`](nima_devices::own_folder::runtime_folder).
     pub emulated: bool,
     /// The right arm pair, or the only one.
     pub right: Option<ArmSet>,
-    /// The left arm pair.
     pub left: Option<ArmSet>,
     /// The sensor under the tissue, for calibration.
     pub tissue_sensor: Option<SensorSettings>,
-    /// The optical tracker.
     pub tracker: Option<ndi::Settings>,
-    /// The marker on the endoscope, seen by the tracker: the mapping from hand to tip then follows the endoscope's
-    /// orientation.
+    /// The endoscope's marker for the tracker: the mapping from hand to tip then follows the endoscope's orientation.
     pub endoscope: Option<EndoscopeSettings>,
     /// The foot pedal: clutch and presence.
     pub pedal: Option<hid::PedalSettings>,
-    /// Flaws that the emulated devices have; none on a rig of real ones.
+    /// Flaws of the emulated devices; none on a rig of real devices.
     pub flaws: Flaws,
-    /// The devices of the last passed ready check, which tell right from left where the file names no serial number. Not in
-    /// the file.
+    /// The devices of the last passed ready check, which distinguish right from left if the file contains no serial
+    /// number. Not in the file.
     #[serde(skip)]
     pub checked: Option<Checked>,
-    /// Which of the devices are at this machine. Not in the file, which is the same at both ends of a network.
+    /// The devices at this machine. Not in the file, which is the same at both ends of a network.
     #[serde(skip)]
     pub ends: Ends,
 }
 
-/// Which devices of a rig file are at this machine.
+/// The devices of a rig file that are at this machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ends {
     /// All of them.
@@ -57,12 +54,10 @@ pub enum Ends {
 }
 
 impl Ends {
-    /// Whether handles and pedals are here.
     pub const fn have_leader(self) -> bool {
         matches!(self, Self::Both | Self::Leader)
     }
 
-    /// Whether arms and sensors are here.
     pub const fn have_follower(self) -> bool {
         matches!(self, Self::Both | Self::Follower)
     }
@@ -74,7 +69,7 @@ impl Ends {
 pub struct EndoscopeSettings {
     /// Index of the tracker's tool, from 0; tools 0 (right) and 1 (left) are on the instruments.
     pub tool: usize,
-    /// Orientation of the picture relative to the marker: roll, pitch, yaw of `n_from_view`, degrees.
+    /// Orientation of the image relative to the marker: roll, pitch, yaw of `n_from_view`, degrees.
     pub n_from_view_deg: Vector3<f64>,
 }
 
@@ -84,25 +79,22 @@ pub struct EndoscopeSettings {
 pub struct ArmSet {
     /// Name of the tool: calibrations are bound to it.
     pub tool: String,
-    /// Place of the force sensor: at the wrist, where it also measures the tool's weight and the trocar's friction, or
-    /// at the tip.
+    /// Location of the force sensor: at the wrist, where it also measures the tool's weight and the trocar's friction,
+    /// or at the tip.
     #[serde(default)]
     pub sensor_at: SensorPlace,
-    /// The haptic handle.
     pub handle: LeaderSettings,
-    /// The arm.
     pub arm: FollowerSettings,
     /// Mounting of the arm, and dimensions of the instrument.
     pub mount: ArmSettings,
     /// Trocar point, where the instrument enters the body.
     pub rcm: RcmSettings,
-    /// The force sensor between arm and instrument.
     pub sensor: SensorSettings,
     /// Orientation of the tracker's marker on the instrument: roll, pitch, yaw of `s1_from_m`, degrees; only with a
     /// marker.
     #[serde(default)]
     pub s1_from_m_deg: Option<Vector3<f64>>,
-    /// Its origin in the frame of the wrist sensor, m; found by the hand-eye calibration.
+    /// Origin of the marker in the frame of the wrist sensor, m; found by the hand-eye calibration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub s1_from_m_m: Option<Vector3<f64>>,
     /// Origin of the tracker's camera in the frame of the arm's base, m; found by the hand-eye calibration.
@@ -111,7 +103,6 @@ pub struct ArmSet {
     /// Orientation of the camera: roll, pitch, yaw of `base_from_c`, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base_from_c_deg: Option<Vector3<f64>>,
-    /// The servos of the instrument.
     #[serde(default)]
     pub servos: Option<dynamixel::Settings>,
     /// Transmission from the servos to the instrument's wrist.
@@ -120,8 +111,8 @@ pub struct ArmSet {
 }
 
 impl ArmSet {
-    /// The marker in the frame of the wrist sensor, and the camera in the frame of the arm's base; `None` before the hand-eye
-    /// calibration.
+    /// Returns the marker in the frame of the wrist sensor, and the camera in the frame of the arm's base; `None`
+    /// before the hand-eye calibration.
     pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
         let pose = |at_m: Option<Vector3<f64>>, deg: Option<Vector3<f64>>| {
             Some(Isometry3::from_parts(at_m?.into(), from_roll_pitch_yaw_deg(&deg?)))
@@ -130,16 +121,14 @@ impl ArmSet {
     }
 }
 
-/// The desk section of a rig file: input devices that lead a simulated rig.
+/// The desk section of a rig file: input devices that control a simulated rig.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DeskSettings {
-    /// A haptic handle, which leads and feels; there is then no cap.
+    /// A haptic handle, which controls the rig and feels its force; the cap is then not used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub handle: Option<LeaderSettings>,
-    /// The six-axis cap.
     pub cap: Option<hid::CapSettings>,
-    /// The pedals.
     pub pedal: Option<hid::PedalSettings>,
     /// Speed of the hand at full deflection of the cap, m/s, above 0 to 0.15.
     pub speed_m_s: f64,
@@ -152,7 +141,7 @@ impl Default for DeskSettings {
 }
 
 impl DeskSettings {
-    /// The cap, if nothing better leads.
+    /// Returns the cap, if no handle is configured.
     pub fn leading_cap(&self) -> Option<&hid::CapSettings> {
         self.cap.as_ref().filter(|_| self.handle.is_none())
     }
@@ -163,7 +152,7 @@ impl DeskSettings {
     /// [`Trouble::Setting`] for the first invalid value, with its full key.
     pub fn check(&self) -> Result<(), Trouble> {
         let Some(handle) = &self.handle else { return Ok(()) };
-        // Nobody may take an emulated handle for a real one, nor lead the loop by both.
+        // An emulated handle must not be mistaken for a real one, nor may both control the loop.
         handle.check().and_then(|()| handle.check_emulated(false)).map_err(|trouble| match trouble {
             Trouble::Setting { key, value, allowed } => {
                 Trouble::Setting { key: format!("desk.handle.{key}"), value, allowed }
@@ -173,19 +162,16 @@ impl DeskSettings {
     }
 }
 
-/// Place of a force sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorPlace {
-    /// Between arm and instrument.
     #[default]
     Wrist,
-    /// At the tip, beyond the trocar: it measures the tissue's force alone.
+    /// At the tip, beyond the trocar: it measures only the tissue's force.
     Tip,
 }
 
 impl Settings {
-    /// The arm pair of this side.
     pub const fn arm(&self, side: Side) -> Option<&ArmSet> {
         match side {
             Side::Right => self.right.as_ref(),
@@ -193,8 +179,8 @@ impl Settings {
         }
     }
 
-    /// A copy in which the paths of emulated devices that are relative lie within `folder`; addresses of real devices
-    /// do not change.
+    /// Returns a copy in which relative paths of emulated devices are within `folder`; addresses of real devices do not
+    /// change.
     #[must_use]
     pub fn emulated_in(mut self, folder: &Path) -> Self {
         if !self.emulated {
@@ -248,7 +234,7 @@ impl Settings {
                 return Err(Trouble::Setting {
                     key: "devices.left.tool".to_owned(),
                     value: format!("\"{}\"", left.tool),
-                    allowed: "another name than the right tool's: calibrations belong to sensor and tool, and exchanged sensors would keep theirs".to_owned(),
+                    allowed: "a different name than the right tool's: calibrations belong to sensor and tool, and swapped sensors would keep theirs".to_owned(),
                 });
             }
         }
@@ -271,7 +257,7 @@ impl Settings {
 }
 
 impl Settings {
-    /// Every external device is listened for at an address of its own.
+    /// Checks that every external device has a separate address.
     fn check_addresses(&self) -> Result<(), Trouble> {
         let address = |part: Part| {
             let set = part.side().and_then(|side| self.arm(side));
@@ -289,7 +275,7 @@ impl Settings {
                 return Err(Trouble::Setting {
                     key: format!("{}.listen", part.key()),
                     value: own.to_string(),
-                    allowed: format!("a port of its own, not that of the {}", other.name()),
+                    allowed: format!("a different port than that of the {}", other.name()),
                 });
             }
         }
@@ -325,10 +311,10 @@ impl Settings {
             allowed: allowed.to_owned(),
         };
         if self.tracker.is_none() {
-            return Err(refuse("tracker", "not given".to_owned(), "the tracker that sees the endoscope's marker"));
+            return Err(refuse("tracker", "not given".to_owned(), "the tracker that detects the endoscope's marker"));
         }
         if !(SIDES..TRACKED_TOOLS).contains(&endoscope.tool) {
-            let allowed = format!("a tool from {SIDES} to {}; those before are on the arms", TRACKED_TOOLS - 1);
+            let allowed = format!("a tool from {SIDES} to {}; the lower ones are on the arms", TRACKED_TOOLS - 1);
             return Err(refuse("endoscope.tool", endoscope.tool.to_string(), &allowed));
         }
         if !endoscope.n_from_view_deg.iter().all(|deg| deg.is_finite()) {
@@ -338,7 +324,7 @@ impl Settings {
         for side in Side::ALL {
             if self.arm(side).is_some_and(|set| set.s1_from_m_deg.is_none()) {
                 let key = format!("{}.s1_from_m_deg", side.word());
-                let allowed = "how this arm's marker sits: without it nobody knows where the endoscope looks from it";
+                let allowed = "the orientation of this arm's marker, to which the endoscope's orientation refers";
                 return Err(refuse(&key, "not given".to_owned(), allowed));
             }
         }
@@ -346,7 +332,7 @@ impl Settings {
     }
 }
 
-/// Prefixes the key of a trouble with the part of the rig file that it stands in.
+/// Prefixes the key of a trouble with its part of the rig file.
 fn below(part: &str, trouble: Trouble) -> Trouble {
     match trouble {
         Trouble::Setting { key, value, allowed } => {

@@ -1,4 +1,4 @@
-//! Starts opening the devices of one side, each in a slot of its own.
+//! Starts opening the devices of one side, each in a separate slot.
 
 use nima_devices::{ClearFaults, Device, SERVOS, Slot, dynamixel};
 

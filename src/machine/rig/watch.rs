@@ -1,10 +1,10 @@
-//! Notices when devices connect or are lost.
+//! Detects that devices connect or are lost.
 
 use nima_devices::Standing;
 
 use crate::rig::{DEVICES_MAX, DeviceEvent, SIDES};
 
-/// Capacity for waiting events. Further ones are dropped; the published health still shows the state of every device.
+/// Capacity for pending events. Further events are dropped; the published health still shows the state of every device.
 const WAITING: usize = 32;
 
 /// Last known state of every device, and the events not yet reported.
@@ -37,7 +37,6 @@ impl Watch {
         }
     }
 
-    /// The oldest event not yet reported.
     pub const fn take(&mut self) -> Option<DeviceEvent> {
         if self.count == 0 {
             return None;

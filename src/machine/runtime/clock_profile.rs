@@ -1,7 +1,8 @@
-//! The virtual clock: at which times the loop wakes, as on a real computer.
+//! The virtual clock: the times at which the loop wakes, as on a real computer.
 //!
-//! A [`ClockProfile`] says how late wake-ups are; [`TickTimes`] draws them from a seed and makes ticks of them by the
-//! rules of the real clock: periods that passed whole are counted and skipped, and a tick has the time at which it woke.
+//! A [`ClockProfile`] defines how late wake-ups are; [`TickTimes`] draws them from a seed and turns them into ticks by
+//! the rules of the real clock: whole periods that have passed are counted and skipped, and a tick has the time of its
+//! wake-up.
 
 use std::{fmt, str::FromStr};
 
@@ -15,11 +16,11 @@ use crate::teleop::Timing;
 const LATE_US: [f64; 2] = [500.0, 4000.0];
 /// Time from one pause of [`ClockProfile::Stall`] to the next, s: uniform in this range.
 const STALL_EVERY_S: [f64; 2] = [0.5, 1.5];
-/// Most late ticks, %, and the longest pause, ms, of a profile.
+/// Maximum fraction of late ticks, %, and maximum pause, ms, of a profile.
 const LATE_MAX_PERCENT: f64 = 50.0;
 const STALL_MAX_MS: u16 = 1000;
 
-/// How late the wake-ups of the virtual clock are.
+/// Lateness of the virtual clock's wake-ups.
 ///
 /// ```
 /// use nima_machine::runtime::ClockProfile;
@@ -31,27 +32,20 @@ const STALL_MAX_MS: u16 = 1000;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ClockProfile {
-    /// Every tick at its deadline.
     #[default]
     Perfect,
-    /// As recorded on a computer on which nothing else runs.
+    /// As recorded on an otherwise idle computer.
     Quiet,
-    /// As recorded on a computer on which other work keeps the processors busy.
+    /// As recorded on a computer whose processors are busy with other work.
     Busy,
-    /// This many of a hundred ticks are 0.5 to 4 ms late, independently of each other; all others wake at their deadline.
-    Late {
-        /// Late ticks, %.
-        percent: f64,
-    },
-    /// About once a second the loop pauses for this time, ms; all other ticks wake at their deadline.
-    Stall {
-        /// Length of a pause, ms.
-        ms: u16,
-    },
+    /// This percentage of ticks is 0.5 to 4 ms late, independently of each other; all others wake at their deadline.
+    Late { percent: f64 },
+    /// About once per second the loop pauses for this time, ms; all other ticks wake at their deadline.
+    Stall { ms: u16 },
 }
 
 impl ClockProfile {
-    /// The profiles of the studies, in the order in which they are shown.
+    /// The profiles of the studies, in display order.
     pub const ALL: [Self; 9] = [
         Self::Perfect,
         Self::Quiet,
@@ -83,7 +77,7 @@ impl Serialize for ClockProfile {
     }
 }
 
-/// A text that names no clock profile.
+/// A text that is not the name of a clock profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "unknown clock profile \"{0}\": use perfect, quiet, busy, late-PERCENT (up to {LATE_MAX_PERCENT}), \
@@ -115,35 +109,32 @@ impl FromStr for ClockProfile {
 /// A virtual clock: a profile and the seed of its random numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct VirtualClock {
-    /// How late its wake-ups are.
     pub profile: ClockProfile,
-    /// Seed of the random numbers.
     pub seed: u64,
 }
 
 impl VirtualClock {
-    /// Every tick at its deadline.
     pub const PERFECT: Self = Self { profile: ClockProfile::Perfect, seed: 0 };
 
-    /// Times of the ticks of a loop with this rate, from the first one on.
+    /// Returns the times of the ticks of a loop with this rate, from the first one on.
     pub fn tick_times(self, rate_hz: f64) -> TickTimes {
         TickTimes::new(self.profile, self.seed, rate_hz)
     }
 }
 
-/// Time of one tick, as the loop's clock gives it.
+/// Time of one tick on the loop's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TickTime {
     /// Loop time at which the tick woke, s.
     pub now_s: f64,
-    /// How late after its deadline the tick woke, s, whole periods included.
+    /// Delay of the wake-up after its deadline, s, including whole periods.
     pub wake_s: f64,
-    /// Periods that passed whole just before this tick, and were skipped.
+    /// Number of whole periods that passed just before this tick and were skipped.
     pub missed: u64,
 }
 
 impl TickTime {
-    /// Puts this time into the timing of a tick.
+    /// Writes this time into the timing of a tick.
     pub(super) const fn enter(self, timing: &mut Timing) {
         timing.now_s = self.now_s;
         timing.wake_s = self.wake_s;
@@ -166,8 +157,8 @@ impl From<TickTime> for Timing {
     }
 }
 
-/// The periods that passed whole until a wake-up that is this late, and the rest, ns. Both clocks skip these periods:
-/// executing them late would be a burst of ticks.
+/// Returns the whole periods that passed before a wake-up with this lateness, and the remainder, ns. Both clocks skip
+/// these periods: executing them late would cause a burst of ticks.
 pub(super) const fn skip(late_ns: u64, period_ns: u64) -> (u64, u64) {
     (late_ns / period_ns, late_ns % period_ns)
 }
@@ -187,7 +178,7 @@ pub struct TickTimes {
     random: Noise,
     /// State of a recorded distribution.
     state: usize,
-    /// When the loop pauses next, s.
+    /// Time of the next pause, s.
     stall_s: f64,
     period_s: f64,
     period_ns: u64,
@@ -196,7 +187,7 @@ pub struct TickTimes {
 }
 
 impl TickTimes {
-    /// The times of a loop with this rate, from time 0 on.
+    /// Creates the times of a loop with this rate, from time 0 on.
     pub fn new(profile: ClockProfile, seed: u64, rate_hz: f64) -> Self {
         let mut random = Noise::new(seed ^ 0x71_c4);
         let stall_s = within(STALL_EVERY_S, random.uniform());
@@ -204,7 +195,6 @@ impl TickTimes {
         Self { profile, random, state: 0, stall_s, period_s: 1.0 / rate_hz, period_ns, deadline: 0 }
     }
 
-    /// The time of the next tick.
     pub fn advance(&mut self) -> TickTime {
         let late_ns = self.late_ns();
         let (missed, rest_ns) = skip(late_ns, self.period_ns);
@@ -214,7 +204,7 @@ impl TickTimes {
         TickTime { now_s, wake_s: late_ns as f64 * 1e-9, missed }
     }
 
-    /// Periods since the clock began: of ticks and of those that were skipped.
+    /// Returns the periods since the clock began: executed ticks and skipped ones.
     pub const fn periods(&self) -> u64 {
         self.deadline
     }
@@ -234,7 +224,7 @@ impl TickTimes {
         }
     }
 
-    /// A pause begins anywhere in the period before the deadline at which it is noticed.
+    /// A pause begins anywhere in the period before the deadline at which it is detected.
     fn stalled_ns(&mut self, ms: u16) -> u64 {
         let deadline_s = self.deadline as f64 * self.period_s;
         if deadline_s < self.stall_s {
@@ -246,7 +236,7 @@ impl TickTimes {
     }
 }
 
-/// The value at this part of a range.
+/// Returns the value at this fraction of a range.
 fn within([low, high]: [f64; 2], part: f64) -> f64 {
     low + (high - low) * part
 }

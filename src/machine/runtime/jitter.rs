@@ -1,29 +1,28 @@
-//! Recorded lateness of wake-ups: how late the loop wakes after its deadlines, as compact tables.
+//! Recorded lateness of wake-ups: the delay after the loop's deadlines, as compact tables.
 //!
-//! A [`JitterProfile`] is a model of two states, because late ticks come in clusters: a process that takes the processor
-//! once soon takes it again. In each state the lateness is drawn from the quantiles recorded in that state, linearly
-//! interpolated. `docs/timing.md` says how the tables were recorded and how a new one is made.
+//! A [`JitterProfile`] is a model of two states, because late ticks come in clusters: a process that takes the
+//! processor once soon takes it again. In each state the lateness is drawn from the quantiles recorded in that state,
+//! linearly interpolated. `docs/timing.md` describes how the tables were recorded and how to record a new one.
 
 use nima_core::noise::Noise;
 
-/// Distribution of the lateness of wake-ups: its quantiles in two states, and how long each state lasts.
+/// Distribution of the lateness of wake-ups: quantiles in two states, and the duration of each state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JitterProfile {
-    /// The usual state, and the one in which late ticks cluster.
+    /// The usual state, and the state in which late ticks cluster.
     states: [JitterState; 2],
 }
 
-/// One state of a [`JitterProfile`].
 #[derive(Clone, Copy, Debug)]
 struct JitterState {
     /// Probability per tick of a change to the other state.
     leave: f64,
-    /// Rising pairs of probability, from 0 to 1, and lateness, us.
+    /// Increasing pairs of probability, from 0 to 1, and lateness, us.
     late_us: &'static [[f64; 2]],
 }
 
-/// An ordinary thread while nothing else runs. The quantiles are recorded; the second state comes so often that as many periods
-/// are missed as in the quiet case of `docs/timing.md`, 0.2 %.
+/// An ordinary thread on an idle computer. The quantiles are recorded; the frequency of the second state is chosen so
+/// that as many periods are missed as in the quiet case of `docs/timing.md`, 0.2 %.
 pub(super) const QUIET: JitterProfile = JitterProfile {
     states: [
         JitterState {
@@ -50,8 +49,9 @@ pub(super) const QUIET: JitterProfile = JitterProfile {
     ],
 };
 
-/// An ordinary thread while two busy processes share two cores with it. The quantiles are recorded; the second state comes so
-/// often that 5 % of the ticks are more than 0.5 ms late, the most that was seen beside two busy processes alone.
+/// An ordinary thread while two busy processes share two cores with it. The quantiles are recorded; the frequency of
+/// the second state is chosen so that 5 % of the ticks are more than 0.5 ms late, the maximum observed with two busy
+/// processes alone.
 pub(super) const BUSY: JitterProfile = JitterProfile {
     states: [
         JitterState {
@@ -79,7 +79,7 @@ pub(super) const BUSY: JitterProfile = JitterProfile {
 };
 
 impl JitterProfile {
-    /// Draws the lateness of the next wake-up, ns. `state` is the present state, 0 or 1, and is updated.
+    /// Draws the lateness of the next wake-up, ns. `state` is the current state, 0 or 1, and is updated.
     pub(super) fn late_ns(&self, state: &mut usize, random: &mut Noise) -> u64 {
         if random.uniform() < self.states[*state].leave {
             *state = 1 - *state;
@@ -88,7 +88,7 @@ impl JitterProfile {
     }
 }
 
-/// Value of a table of quantiles at this probability, linearly interpolated.
+/// Returns the value of a quantile table at this probability, linearly interpolated.
 fn at(quantiles: &[[f64; 2]], probability: f64) -> f64 {
     let above = quantiles.partition_point(|[from, _]| *from <= probability).clamp(1, quantiles.len() - 1);
     let [from, low] = quantiles[above - 1];

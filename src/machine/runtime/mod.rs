@@ -31,36 +31,29 @@ use crate::{
     teleop::Loop,
 };
 
-/// Source of the loop's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clock {
     /// The monotonic clock: every period has a deadline, late wake-ups are counted, and a stall switches the drives
     /// off.
     Real,
     /// Simulated time that advances at most `speed` times as fast as real time. After a delay the loop continues where
-    /// it was, and nothing counts as late. For simulated rigs only, which have no hardware to keep in time.
+    /// it stopped, and nothing counts as late. For simulated rigs only, which have no hardware to keep in step.
     Simulated {
         /// Simulated seconds per real second.
         speed: f64,
     },
 }
 
-/// A loop and its rig, ready to start.
 pub struct Assembly {
-    /// The loop.
     pub control: Loop,
-    /// The rig.
     pub rig: Box<dyn Rig>,
-    /// The devices of the rig.
     pub roster: Roster,
-    /// Ticks per second.
     pub rate_hz: f64,
-    /// Source of time, if the loop runs in a thread of its own.
+    /// Source of time, if the loop runs in its own thread.
     pub clock: Clock,
-    /// Scheduling to request from the operating system.
     pub scheduling: SchedulingClass,
-    /// Engage as soon as every device delivers.
+    /// Whether to engage as soon as every device delivers data.
     pub engage: bool,
-    /// Takes what enters the loop and what comes out of it, for a recording.
+    /// Records the loop's input and output.
     pub tap: Option<Tap>,
 }

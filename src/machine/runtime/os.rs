@@ -15,7 +15,7 @@ use thread_priority::{
 
 use crate::{config::SchedulingClass, messages::Scheduling};
 
-/// Processor time used so far, s: by this thread and by the whole process. Zeros if it cannot be read.
+/// Returns the processor time used so far, s: by this thread and by the whole process. Zeros if it cannot be read.
 #[cfg(target_os = "linux")]
 pub(super) fn cpu_s() -> [f64; 2] {
     [libc::CLOCK_THREAD_CPUTIME_ID, libc::CLOCK_PROCESS_CPUTIME_ID].map(|clock| {
@@ -26,7 +26,7 @@ pub(super) fn cpu_s() -> [f64; 2] {
     })
 }
 
-/// Processor time used so far, s: by this thread and by the whole process. Zeros if it cannot be read.
+/// Returns the processor time used so far, s: by this thread and by the whole process. Zeros if it cannot be read.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn cpu_s() -> [f64; 2] {
     [0.0; 2]
@@ -34,11 +34,11 @@ pub(super) fn cpu_s() -> [f64; 2] {
 
 /// Priority of the loop: above ordinary audio (70), below the kernel's own threads (99).
 const PRIORITY: u8 = 80;
-/// Bytes of stack touched in advance, so that no page fault happens in a tick.
+/// Bytes of stack touched in advance, so that no page fault occurs in a tick.
 const STACK_TOUCHED: usize = 128 * 1024;
 
-/// Requests scheduling and locked memory for the calling thread. What is refused is reported in the result and is not
-/// an error.
+/// Requests scheduling and locked memory for the calling thread. A refusal is reported in the result and is not an
+/// error.
 pub(super) fn prepare_thread(class: SchedulingClass, period_ns: u64) -> Scheduling {
     touch_stack();
     match class {
@@ -58,7 +58,7 @@ fn touch_stack() {
     std::hint::black_box(&stack);
 }
 
-/// Gives the calling thread (the supervisor) a priority above the loop's, if the system allows it.
+/// Gives the calling thread (the supervisor) a priority above the loop's, if the system permits it.
 pub(super) fn prepare_supervisor() {
     raised(PRIORITY + 5);
 }
@@ -78,7 +78,7 @@ fn raised(_: u8) -> bool {
     thread_priority::ThreadPriority::Max.set_for_current().is_ok()
 }
 
-/// Share of the period that `SCHED_DEADLINE` lets the loop use before the kernel suspends it until the next period.
+/// Fraction of the period that `SCHED_DEADLINE` lets the loop use before the kernel suspends it until the next period.
 #[cfg(target_os = "linux")]
 const BUDGET: f64 = 0.8;
 
@@ -98,7 +98,7 @@ fn deadline_granted(period_ns: u64) -> bool {
     set_thread_priority_and_policy(THIS_THREAD, budget, policy).is_ok()
 }
 
-/// `SCHED_DEADLINE` if a budget is given and granted, else `SCHED_FIFO`.
+/// Requests `SCHED_DEADLINE` with this budget if there is one, otherwise `SCHED_FIFO`, which is also the fallback.
 #[cfg(target_os = "linux")]
 fn granted(period_ns: Option<u64>) -> Scheduling {
     let deadline = period_ns.is_some_and(deadline_granted);
@@ -106,7 +106,7 @@ fn granted(period_ns: Option<u64>) -> Scheduling {
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
     unsafe {
         libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
-        // Lock only without a limit: with a finite one the process soon fails to map memory.
+        // Lock only without a limit: with a finite limit the process soon fails to map memory.
         let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
         let unlimited = libc::geteuid() == 0
             || (libc::getrlimit(libc::RLIMIT_MEMLOCK, &raw mut limit) == 0 && limit.rlim_cur == libc::RLIM_INFINITY);
@@ -123,7 +123,7 @@ fn granted(_: Option<u64>) -> Scheduling {
     Scheduling::default()
 }
 
-/// Nanoseconds on the monotonic clock.
+/// Returns the nanoseconds of the monotonic clock.
 #[cfg(target_os = "linux")]
 pub(super) fn monotonic_ns() -> u64 {
     let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
@@ -132,7 +132,7 @@ pub(super) fn monotonic_ns() -> u64 {
     now.tv_sec as u64 * 1_000_000_000 + now.tv_nsec as u64
 }
 
-/// Nanoseconds on the monotonic clock.
+/// Returns the nanoseconds of the monotonic clock.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn monotonic_ns() -> u64 {
     use std::{sync::OnceLock, time::Instant};

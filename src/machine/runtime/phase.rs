@@ -1,33 +1,35 @@
-//! Keeps the loop from waking just when a sensor sends.
+//! Prevents the loop from waking just when a sensor sends.
 //!
-//! A sensor sends by its own clock. If it sends at the moment at which the loop reads, some readings come an instant too late, and the force
-//! made of them a whole period later. The loop then comes a quarter of a period later, until no device is in this place. It gets there by
-//! periods that are longer by a thousandth, which the filters do not notice.
+//! A sensor sends on its own clock. If it sends at the moment at which the loop reads, some readings arrive an instant
+//! too late, and the forces computed from them a whole period later. The loop then shifts by a quarter of a period,
+//! until no device sends at that moment. It shifts by making periods a thousandth longer, which the filters do not
+//! notice.
 
-/// By how much a period is longer while the loop moves, as a share of it.
+/// Extension of a period while the loop shifts, as one part in this many.
 const STRETCH: u64 = 1000;
-/// How far it moves at once: a quarter of a period. Four moves try every place.
+/// Size of a shift: a quarter of a period. Four shifts try every phase.
 const MOVES: u32 = 4;
 /// Ticks over which the late ones are counted: a second.
 const MEMORY: f64 = 1000.0;
-/// So many late ticks among these move the loop: one in a hundred.
+/// Number of late ticks among these that causes a shift: one in a hundred.
 const LATE_MAX: f64 = 10.0;
-/// Ticks in one place without too many late ones, after which it is a good one: 10 s.
+/// Ticks at one phase without too many late ones after which the phase is good: 10 s.
 const GOOD: u64 = 10_000;
-/// A device that sends more seldom than the loop comes is late in every place; then it is tried again after a minute.
+/// A device that sends less often than the loop reads is late at every phase; the search is then repeated after a
+/// minute.
 const REST: u64 = 60_000;
 
-/// Where in the period the loop wakes.
+/// Phase of the loop's wake-ups within the period.
 #[derive(Debug)]
 pub(super) struct Phase {
     period_ns: u64,
-    /// Recent ticks in which a device had nothing new.
+    /// Recent ticks in which a device had no new reading.
     late: f64,
-    /// Rest of the move under way.
+    /// Remainder of the current shift.
     ahead_ns: u64,
-    /// Moves since the last good place.
+    /// Shifts since the last good phase.
     moves: u32,
-    /// Ticks since the last move.
+    /// Ticks since the last shift.
     stood: u64,
 }
 
@@ -36,7 +38,7 @@ impl Phase {
         Self { period_ns, late: 0.0, ahead_ns: 0, moves: 0, stood: 0 }
     }
 
-    /// By how much the next period is longer, ns. `is_late`: a device had nothing new in this tick.
+    /// Returns the extension of the next period, ns. `is_late`: a device had no new reading in this tick.
     pub(super) fn step(&mut self, is_late: bool) -> u64 {
         let stretch_ns = self.ahead_ns.min(self.period_ns / STRETCH);
         if stretch_ns > 0 {
@@ -64,8 +66,9 @@ mod tests {
 
     const PERIOD_NS: u64 = 1_000_000;
 
-    /// Sensors that send once in `every_ns`, each from its own time on, with up to 0.1 ms of delay, and a loop that follows its phase: in
-    /// which ticks a sensor had nothing new, and how far the loop has moved in all, ns.
+    /// Simulates sensors that send once per `every_ns`, each from its own start, with up to 0.1 ms of delay, and a loop
+    /// that adjusts its phase. Returns the ticks in which a sensor had no new reading, and the total shift of the loop,
+    /// ns.
     fn late(begins_ns: &[u64], every_ns: u64, ticks: u64) -> (Vec<bool>, u64) {
         let mut random = fastrand::Rng::with_seed(1);
         let mut phase = Phase::new(PERIOD_NS);

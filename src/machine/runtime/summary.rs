@@ -1,4 +1,4 @@
-//! Figures that a run reports when it ends.
+//! Results that a run reports when it ends.
 
 use nima_core::{
     impedance::Mode,
@@ -19,60 +19,49 @@ use crate::{
 pub struct ModeError {
     pub side: Side,
     pub mode: Mode,
-    /// Mean 3-D error, N.
     pub mae_n: f64,
-    /// Standard deviation of the 3-D error, N.
     pub sd_n: f64,
-    /// Largest 3-D error, N.
     pub max_n: f64,
     /// Ticks in which the mode had no valid force.
     pub invalid: u64,
 }
 
-/// Processor time per wall time, in shares of one core.
+/// Processor time per wall time, as fractions of one core.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct CpuShare {
-    /// The real-time thread.
     pub realtime: f64,
-    /// The whole process.
     pub process: f64,
 }
 
 /// State of one device at the end of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceFigures {
-    /// Its name in the rig.
     pub name: String,
     /// Counters since the device was opened.
     #[serde(flatten)]
     pub health: Health,
-    /// Why it is not connected, if known.
+    /// Reason why the device is not connected, if known.
     pub trouble: Option<CauseAndCure>,
 }
 
-/// A fault: its cause, and what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CauseAndCure {
-    /// The device concerned, if the fault is about a device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
-    /// Cause, in the words of the screen.
     pub cause: String,
-    /// What the operator can do.
     pub cure: String,
 }
 
 /// State of one arm pair at the end of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct ArmEnd {
-    /// Which arm pair.
     pub side: Side,
     /// Its state in the last tick, before the outputs were made safe.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
-    /// Its fault, if it is in one; filled in by [`Summary::explain`].
+    /// Its fault, if any; filled in by [`Summary::explain`].
     pub fault: Option<CauseAndCure>,
-    /// The device that the fault is about.
+    /// The device concerned by the fault.
     #[serde(skip)]
     device: Option<String>,
 }
@@ -96,44 +85,37 @@ fn by_key<S: serde::Serializer>(state: &LoopState, serializer: S) -> Result<S::O
     })
 }
 
-/// Histograms of durations; each bar counts the durations above the upper limit of the bar before and up to its own.
+/// Histograms of durations; each bar counts the durations above the upper limit of the previous bar and up to its own.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Histograms {
-    /// Lateness of wake-ups.
     pub wake: Vec<Bar>,
-    /// Work of one tick.
     pub work: Vec<Bar>,
-    /// Exchange with the rig.
     pub rig: Vec<Bar>,
-    /// Time from measurement to force.
     pub sample_to_force: Vec<Bar>,
 }
 
-/// Timing and error figures of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// `real` or `virtual`.
     pub clock: &'static str,
-    /// Profile and seed of a virtual clock on which ticks are late.
+    /// Profile and seed of a virtual clock with late ticks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lateness: Option<VirtualClock>,
-    /// Ticks executed.
     pub ticks: u64,
-    /// Periods missed and skipped.
+    /// Number of periods missed and skipped.
     pub missed: u64,
     /// Ticks dropped because the queue to the screen was full.
     pub dropped: u64,
-    /// Loop time at the end, s.
     pub seconds: f64,
     /// Loop time per wall time: above 1 is faster than real time.
     pub speed: f64,
-    /// Lateness of wake-ups, us (zero on a virtual clock that is perfect).
+    /// Lateness of wake-ups, us (zero on the perfect virtual clock).
     pub wake_us: Quantiles,
     /// Work of one tick of the loop, without rig and queues, us.
     pub work_us: Quantiles,
     /// Time spent reading from and writing to the rig (devices or simulation), us.
     pub rig_us: Quantiles,
-    /// Time from the arrival of the oldest measurement until the force computed from it was given to the device, us. In
+    /// Time from the arrival of the oldest measurement until the force computed from it was sent to the device, us. In
     /// a simulation only the loop's own part.
     pub sample_to_force_us: Quantiles,
     /// The four durations above as histograms.
@@ -142,21 +124,21 @@ pub struct Summary {
     pub cpu: CpuShare,
     /// Real-time privileges that the operating system granted.
     pub scheduling: Scheduling,
-    /// State at the end; with two arm pairs the state that needs more attention.
+    /// State at the end; with two arm pairs the state with the higher priority.
     #[serde(serialize_with = "by_key")]
     pub final_state: LoopState,
     /// The fault of the same arm pair.
     pub fault: Option<CauseAndCure>,
-    /// The end state of each arm pair, the right one first.
+    /// State of each arm pair at the end, the right one first.
     pub arms: Vec<ArmEnd>,
     /// The devices; empty if everything is simulated.
     pub devices: Vec<DeviceFigures>,
-    /// Errors of what each mode asked for before the gates, per arm pair and mode, the right pair first.
+    /// Errors of each mode's force before the gates, per arm pair and mode, the right pair first.
     pub error: Vec<ModeError>,
 }
 
 impl Summary {
-    /// Adds what the threads that open the devices know: names for faults, and why a device is not connected.
+    /// Adds data of the threads that open the devices: names for faults, and the reason why a device is not connected.
     pub(super) fn tell_devices(&mut self, roster: &Roster) {
         for (device, entry) in self.devices.iter_mut().zip(roster) {
             if device.health.standing != Standing::Connected {
@@ -179,7 +161,7 @@ impl Summary {
         }
     }
 
-    /// Fills in the texts of the faults. `words` returns cause and cure of a fault; the texts belong to the user
+    /// Fills in the texts of the faults. `words` returns cause and remedy of a fault; the texts belong to the user
     /// interface, not to this crate.
     pub fn explain(&mut self, words: impl Fn(Fault) -> [&'static str; 2]) {
         for arm in &mut self.arms {

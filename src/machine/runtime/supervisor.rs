@@ -1,5 +1,5 @@
-//! Watches the loop from its own thread: if the loop stalls while the drives are on, for whatever reason, the drives
-//! are switched off.
+//! Monitors the loop from a separate thread: if the loop stalls while the drives are on, for whatever reason, the
+//! drives are switched off.
 //!
 //! The loop calls `beat` once per tick. The supervisor checks every 2 ms; after [`STALL_MAX_S`] without a beat it calls
 //! the [`Lever`](nima_devices::Lever) of every device (handle: force off, brakes on; arm: leave cyclic servoing) and
@@ -19,16 +19,16 @@ use nima_devices::Lever;
 
 use super::os;
 
-/// Longest time without a beat while drives are on, s.
+/// Maximum time without a beat while drives are on, s: the age beyond which a sample is a fault too
+/// (`teleop::samples`), because a force that is not renewed for longer is old.
 pub const STALL_MAX_S: f64 = 0.020;
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// State shared by the loop and the supervisor.
 #[derive(Debug, Default)]
 pub(super) struct Pulse {
     beat_ns: AtomicU64,
     driven: AtomicBool,
-    /// How long the loop had been silent when the levers were pulled, ns; zero if they were not pulled.
+    /// Silence of the loop when the levers were pulled, ns; zero if they were not pulled.
     pulled_ns: AtomicU64,
 }
 
@@ -39,12 +39,13 @@ impl Pulse {
         self.beat_ns.store(now_ns, Ordering::Release);
     }
 
-    /// In place of a beat, while this watchdog is tested: the supervisor sees a loop that stands still with its drives on.
+    /// Replaces a beat while this watchdog is tested: to the supervisor the loop appears to stand still with its drives
+    /// on.
     pub(super) fn withhold(&self) {
         self.driven.store(true, Ordering::Relaxed);
     }
 
-    /// If the levers were pulled since the last call of this function: how long the loop had been silent, s.
+    /// Returns how long the loop had been silent, s, if the levers were pulled since the last call of this function.
     pub(super) fn take_pulled(&self) -> Option<f64> {
         match self.pulled_ns.swap(0, Ordering::AcqRel) {
             0 => None,
@@ -53,7 +54,7 @@ impl Pulse {
     }
 }
 
-/// The supervisor's thread. Dropping this stops it.
+/// The supervisor's thread. Dropping this value stops it.
 #[derive(Debug)]
 pub(super) struct Supervisor {
     stop: Arc<AtomicBool>,

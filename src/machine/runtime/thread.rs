@@ -33,25 +33,26 @@ pub const TICKS_WAITING_MAX: usize = 8192;
 const COMMANDS_WAITING_MAX: usize = 64;
 /// Capacity of the queue of events for the screen.
 const EVENTS_WAITING_MAX: usize = 256;
-/// The health of the devices, and what they have delivered, are published once per this many ticks.
+/// Health and deliveries of the devices are published once per this many ticks: ten times per second at 1 kHz; a screen
+/// needs no more.
 const HEALTH_EVERY: u64 = 100;
-/// Capacity of the queue of what the devices have delivered; 4 s at 1 kHz, more than the screen ever rests.
+/// Capacity of the queue of device deliveries; 4 s at 1 kHz, longer than any pause of the screen.
 const GAUGES_WAITING_MAX: usize = 40;
-/// Most device events (connected, lost) that are handled in one tick.
+/// Maximum number of device events (connected, lost) handled in one tick. A burst of events would otherwise make the
+/// tick late.
 const DEVICE_EVENTS_PER_TICK_MAX: usize = 4;
-/// Most commands carried out in one tick; further ones wait for the next tick.
+/// Maximum number of commands carried out in one tick; further ones wait for the next tick. A burst of commands would
+/// otherwise make the tick late.
 const COMMANDS_PER_TICK_MAX: usize = 2;
 
-/// Why a loop could not be started.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
-    /// The rig's settings are not usable.
+    /// The rig's settings are invalid.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The operating system could not create the thread.
+    /// The operating system could not create a thread of the rig.
     #[error(transparent)]
     Rig(#[from] RigError),
-    /// The operating system could not create a thread.
     #[error("the real-time thread could not be started")]
     Thread(#[from] io::Error),
 }
@@ -122,66 +123,67 @@ pub fn start(assembly: Assembly) -> Result<Handle, StartError> {
 }
 
 impl Handle {
-    /// Sends a command; false when the queue is full or the loop has ended.
+    /// Sends a command; returns false if the queue is full or the loop has ended.
     pub fn send(&self, command: Command) -> bool {
         self.commands.try_send(command).is_ok()
     }
 
-    /// Calls `each` for every waiting tick, oldest first, without blocking.
+    /// Calls `each` for every pending tick, oldest first, without blocking.
     pub fn drain_ticks(&self, mut each: impl FnMut(&Tick)) {
         // Bounded, so that a loop that produces ticks faster than the screen reads them cannot keep the screen in this
         // function.
         self.ticks.try_iter().take(TICKS_WAITING_MAX).for_each(|tick| each(&tick));
     }
 
-    /// Calls `each` for every waiting event, oldest first, without blocking.
+    /// Calls `each` for every pending event, oldest first, without blocking.
     pub fn drain_events(&self, mut each: impl FnMut(&Event)) {
         self.events.try_iter().take(EVENTS_WAITING_MAX).for_each(|event| each(&event));
     }
 
-    /// The devices of the rig; empty if everything is simulated.
+    /// Returns the devices of the rig; empty if everything is simulated.
     pub fn roster(&self) -> &Roster {
         &self.roster
     }
 
-    /// When the force sensor of this side last connected or disconnected. Read this before [`Handle::force_sensor`]:
-    /// [`Handle::put_in_force`] is then refused if the sensor has been exchanged in between.
+    /// Returns the last connection or disconnection of this side's force sensor. Read it before
+    /// [`Handle::force_sensor`]: [`Handle::put_in_force`] then refuses calibrations if the sensor has been swapped in
+    /// between.
     pub fn wrist_change(&self, side: Side) -> WristChange {
         self.wrists.change(side)
     }
 
-    /// Identity that the force sensor of this side reported; `None` until it has been opened.
+    /// Returns the identity that the force sensor of this side reported; `None` until it has been opened.
     pub fn force_sensor(&self, side: Side) -> Option<Identity> {
         self.roster.iter().find(|entry| entry.force_sensor_of() == Some(side))?.view.report().identity
     }
 
-    /// Puts the calibrations of a force sensor in force, unless the sensor has connected or disconnected since
-    /// `change`. Returns false if the loop cannot accept them now.
+    /// Activates the calibrations of a force sensor, unless the sensor has connected or disconnected since `change`.
+    /// Returns false if the loop cannot accept them now.
     pub fn put_in_force(&self, change: WristChange, calibrations: &Calibrations) -> bool {
         self.wrists.put_in_force(change, calibrations)
     }
 
-    /// Health of the devices; `None` if it has not changed since the last call.
+    /// Returns the health of the devices; `None` if it has not changed since the last call.
     pub fn healths(&self) -> Option<Healths> {
         self.healths.try_recv().ok()
     }
 
-    /// What the devices have delivered, in blocks of time, oldest first. Blocks that nobody reads in time are dropped.
+    /// Returns the deliveries of the devices, in blocks of time, oldest first. Blocks that are not read in time are
+    /// dropped.
     pub fn gauges(&self) -> impl Iterator<Item = Gauges> {
         self.gauges.try_iter().take(GAUGES_WAITING_MAX)
     }
 
-    /// An object that can end this loop from any thread.
+    /// Returns an object that can end this loop from any thread.
     pub fn ender(&self) -> Ender {
         Ender(self.commands.clone())
     }
 
-    /// Whether the loop's thread is running.
     pub fn is_running(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
 
-    /// Ends the loop and returns its figures; `None` if its thread has panicked.
+    /// Ends the loop and returns its results; `None` if its thread has panicked.
     pub fn stop_and_join(mut self) -> Option<Summary> {
         self.end()
     }
@@ -196,13 +198,12 @@ impl Handle {
     }
 }
 
-/// Ends a loop from any thread: zero force, drives off, arm at rest. The figures of the run stay available in the
+/// Ends a loop from any thread: zero force, drives off, arm at rest. The results of the run stay available in the
 /// [`Handle`].
 #[derive(Clone, Debug)]
 pub struct Ender(Sender<Command>);
 
 impl Ender {
-    /// Ends the loop within a few ticks.
     pub fn end(&self) {
         // May block while the queue is full, which the loop empties. The send fails only if the loop has already ended.
         self.0.send(Command::Shutdown).ok();
@@ -220,12 +221,11 @@ struct Realtime {
     rig: Box<dyn Rig>,
     wrists: Wrists,
     scheduling: SchedulingClass,
-    /// Names of the devices.
     names: Vec<String>,
-    /// Engage once, as soon as every device delivers.
+    /// Whether to engage once, as soon as every device delivers data.
     engage: bool,
     period_ns: u64,
-    /// Whether a device had nothing new in the last tick.
+    /// Whether a device had no new reading in the last tick.
     is_late: bool,
     clock: Clock,
     commands: Receiver<Command>,
@@ -251,7 +251,7 @@ impl Realtime {
             Clock::Real => self.run_in_real_time(start_ns, &mut timing),
             Clock::Simulated { speed } => self.run_in_simulated_time(start_ns, speed, &mut timing),
         }
-        // Whatever ended the loop: leave the hand without force and the follower at rest.
+        // However the loop ended, leave the hand without force and the follower at rest.
         self.rig.write(timing.now_s, &[Outputs::SAFE; SIDES]);
         self.pulse.beat(os::monotonic_ns(), false);
         let wall_s = (os::monotonic_ns() - start_ns) as f64 * 1e-9;
@@ -280,7 +280,7 @@ impl Realtime {
             let late_ns = woke_ns.saturating_sub(deadline_ns);
             let (missed, rest_ns) = skip(late_ns, self.period_ns);
             deadline_ns += missed * self.period_ns;
-            // The devices are read and the force is given now, not at the deadline.
+            // The devices are read and the force is sent now, not at the deadline.
             let now_s = (deadline_ns + rest_ns - start_ns) as f64 * 1e-9;
             TickTime { now_s, wake_s: late_ns as f64 * 1e-9, missed }.enter(timing);
             self.tick(timing, woke_ns);
@@ -294,14 +294,14 @@ impl Realtime {
             due_ns += pace_ns;
             os::sleep_until_ns(due_ns);
             let woke_ns = os::monotonic_ns();
-            // Do not catch up after a delay: that would be a burst of ticks.
+            // Do not catch up after a delay, which would cause a burst of ticks.
             due_ns = due_ns.max(woke_ns.saturating_sub(pace_ns));
             timing.now_s += self.period_ns as f64 * 1e-9;
             self.tick(timing, woke_ns);
         }
     }
 
-    /// Returns false if the loop is to end.
+    /// Returns false if the loop must end.
     fn obey_commands(&mut self, now_s: f64) -> bool {
         self.control.clear_events();
         for _ in 0..COMMANDS_PER_TICK_MAX {
@@ -353,7 +353,7 @@ impl Realtime {
         } else {
             self.pulse.beat(written_ns, stalls && outputs.iter().any(|outputs| outputs.drives));
         }
-        // After the force was given to the device, so that it does not wait for the tap.
+        // After the force was sent to the device, so that it does not wait for the tap.
         if let Some(tap) = &mut self.tap {
             tap.tick(self.control.events(), timing, &inputs, &outputs, &ticks);
         }
@@ -387,7 +387,7 @@ impl Realtime {
     }
 }
 
-/// Tells a tap of an operation.
+/// Adds an operation to a tap.
 pub(super) fn tell(tap: &mut Option<Tap>, operation: Operation) {
     if let Some(tap) = tap {
         tap.operation(operation);

@@ -22,7 +22,7 @@ pub fn run_virtual(assembly: Assembly, seconds: f64, each: impl FnMut(&Tick) -> 
     run_virtual_on(VirtualClock::PERFECT, assembly, seconds, each)
 }
 
-/// The same with late ticks, as this clock has them.
+/// Runs the loop as [`run_virtual`] does, with the late ticks of this clock.
 pub fn run_virtual_on(
     clock: VirtualClock,
     assembly: Assembly,
@@ -32,7 +32,7 @@ pub fn run_virtual_on(
     run(clock, assembly, seconds, &mut each)
 }
 
-/// Built once, here, whatever is called with each tick.
+/// Compiled once, independent of the type of `each`.
 fn run(
     clock: VirtualClock,
     assembly: Assembly,
@@ -43,7 +43,7 @@ fn run(
     let mut tap = tap.map(Tap::waiting);
     let mut times = clock.tick_times(rate_hz);
     let mut supervisor = VirtualSupervisor::default();
-    // Half a period before the end: times are rounded.
+    // Half a period before the end, because times are rounded.
     let end_s = ((seconds * rate_hz).round() - 0.5) / rate_hz;
     let mut meters = Meters::default();
     let mut missed = 0;
@@ -94,26 +94,27 @@ fn run(
     }
 }
 
-/// Stands for the supervisor of the real clock: a loop that was silent for too long with its drives on has lost them.
+/// Replaces the supervisor of the real clock: a loop that was silent for too long with its drives on loses them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VirtualSupervisor {
     driven_at_s: Option<f64>,
 }
 
 impl VirtualSupervisor {
-    /// Notes that the loop gave these outputs at this time, s.
+    /// Records that the loop sent these outputs at this time, s.
     pub fn beat(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) {
         self.driven_at_s = outputs.iter().any(|outputs| outputs.drives).then_some(now_s);
     }
 
-    /// How long the loop was silent, s, if it missed periods for too long; for [`Loop::notice_stall`].
+    /// Returns how long the loop was silent, s, if it missed periods for too long; for [`Loop::notice_stall`].
     pub fn stalled_s(&self, time: &TickTime) -> Option<f64> {
         let silent_s = self.driven_at_s.filter(|_| time.missed > 0).map(|at_s| time.now_s - at_s);
         silent_s.filter(|silent_s| *silent_s > STALL_MAX_S)
     }
 }
 
-/// One tick of a loop with its rig at this time, for several loops on one clock. Its events stay in the loop until the next one.
+/// Executes one tick of a loop with its rig at this time, for several loops on one clock. Its events stay in the loop
+/// until the next tick.
 pub fn tick<L: Link>(
     control: &mut Loop<L>,
     rig: &mut impl Rig,

@@ -1,7 +1,7 @@
 //! Applies calibrations while the loop runs, once the force sensor of a side has reported its identity.
 //!
-//! A sensor that reconnects may be a different one. So the tick that notices a change suspends the calibrations of that
-//! side, and calibrations prepared before the change are refused. The memory that a tick exchanges is allocated and
+//! A sensor that reconnects may be a different one. The tick that detects a change therefore suspends the calibrations
+//! of that side, and calibrations prepared before the change are refused. The memory that a tick swaps is allocated and
 //! freed in other threads.
 
 use std::sync::{
@@ -24,8 +24,8 @@ use crate::{
 /// Capacity of the queue of prepared calibrations.
 const WAITING_MAX: usize = 4;
 
-/// Identifies the last time that the force sensor of a side connected or disconnected. Calibrations are valid until the
-/// next change.
+/// Identifies the last connection or disconnection of a side's force sensor. Calibrations are valid until the next
+/// change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WristChange {
     side: Side,
@@ -34,7 +34,7 @@ pub struct WristChange {
 }
 
 impl WristChange {
-    /// Whether the change was a connection.
+    /// Returns whether the change was a connection.
     pub const fn is_there(self) -> bool {
         self.count % 2 == 1
     }
@@ -48,13 +48,12 @@ impl WristChange {
 struct Prepared {
     change: WristChange,
     path: Box<ForcePath>,
-    /// Number of the calibrations at the tap.
     number: Option<u64>,
 }
 
 type Counts = Arc<[AtomicU64; SIDES]>;
 
-/// The part used by the loop.
+/// The loop's part.
 #[derive(Debug)]
 pub(super) struct Wrists {
     counts: Counts,
@@ -63,7 +62,7 @@ pub(super) struct Wrists {
     spent: Sender<Prepared>,
 }
 
-/// The part used by other threads.
+/// The part of other threads.
 #[derive(Debug)]
 pub(super) struct WristDoor {
     counts: Counts,
@@ -77,7 +76,7 @@ pub(super) struct WristDoor {
 pub(super) fn ends(roster: &[RosterEntry], period_s: f64, filing: Option<Filing>) -> (Wrists, WristDoor) {
     let counts = Counts::default();
     let (prepare, prepared) = bounded(WAITING_MAX);
-    // The other part empties this queue before it sends, so there are never twice as many.
+    // The other part empties this queue before it sends, so there are never more than twice as many.
     let (spend, spent) = bounded(2 * WAITING_MAX);
     let of_device = std::array::from_fn(|device| roster.get(device).and_then(RosterEntry::force_sensor_of));
     let wrists = Wrists { counts: Arc::clone(&counts), of_device, prepared, spent: spend };
@@ -85,7 +84,6 @@ pub(super) fn ends(roster: &[RosterEntry], period_s: f64, filing: Option<Filing>
 }
 
 impl Wrists {
-    /// Handles the connection or loss of a device.
     pub(super) fn notice(&self, event: &DeviceEvent, control: &mut Loop, tap: &mut Option<Tap>) {
         if let Some(side) = self.of_device.get(usize::from(event.device)).copied().flatten() {
             tell(tap, Operation::Suspend(side));
@@ -94,7 +92,7 @@ impl Wrists {
         }
     }
 
-    /// Applies the calibrations that were prepared for the connected sensor.
+    /// Activates the calibrations that were prepared for the connected sensor.
     pub(super) fn put_in_force(&self, control: &mut Loop, tap: &mut Option<Tap>) {
         let Ok(mut prepared) = self.prepared.try_recv() else { return };
         let WristChange { side, count } = prepared.change;
@@ -103,8 +101,8 @@ impl Wrists {
             tell(tap, Operation::Calibrations { side, number });
         }
         if now == count && !control.exchange_force_path(side, &mut prepared.path) {
-            // Drives are on, so the calibrations cannot change now. A new count makes the caller see that they are not
-            // in force and try again.
+            // Drives are on, so the calibrations cannot change now. A new count shows the caller that they are not
+            // active, so that it retries.
             self.count_on(side, prepared.change.is_there());
         }
         self.spent.try_send(prepared).ok();
@@ -181,7 +179,8 @@ mod tests {
         }
     }
 
-    /// Inputs of a resting arm that measures this force (N) beside the weight at the wrist; no reading repeats itself.
+    /// Returns inputs of a resting arm that measures this force (N) in addition to the weight at the wrist; no reading
+    /// repeats.
     fn at_wrist(load_n: f64, t_s: f64) -> Inputs {
         let force_n = Vector3::new(load_n, 0.0, -0.4 * GRAVITY_M_S2 + 1e-3 * t_s);
         let sample = WristSample {
@@ -204,7 +203,7 @@ mod tests {
     #[test]
     fn a_sensor_that_comes_or_goes_takes_its_calibrations_with_it() {
         let mut bench = Bench::new();
-        assert_eq!(bench.tick(), ForceSource::Unidentified, "nobody knows which sensor is there");
+        assert_eq!(bench.tick(), ForceSource::Unidentified, "the connected sensor is unknown");
         assert!(!bench.door.change(Side::Right).is_there());
         bench.sensor_is(Standing::Connected);
         let met = bench.door.change(Side::Right);
@@ -216,7 +215,7 @@ mod tests {
             assert_eq!(bench.tick(), ForceSource::Unidentified, "it may be another sensor now");
             assert_eq!(bench.door.change(Side::Right).is_there(), standing == Standing::Connected);
         }
-        // Prepared for the sensor before: refused.
+        // Prepared for the previous sensor: refused.
         assert!(bench.door.put_in_force(met, &calibrated()));
         assert_eq!(bench.tick(), ForceSource::Unidentified);
         assert!(bench.door.put_in_force(bench.door.change(Side::Right), &calibrated()));

@@ -1,4 +1,4 @@
-//! Running error of each mode's force against the true force; no samples are stored.
+//! Running error of each mode's force relative to the true force; no samples are stored.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, ModeSet, Rendered, SLOTS};
@@ -6,18 +6,16 @@ use nima_core::impedance::{Mode, ModeSet, Rendered, SLOTS};
 /// Mean, standard deviation and maximum of a vector error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorStats {
-    /// Number of errors added.
     pub count: u64,
     /// Mean of the error's norm, N.
     pub mae_n: f64,
-    /// Largest norm, N.
     pub max_n: f64,
     mean_n: Vector3<f64>,
     squares_n2: f64,
 }
 
 impl ErrorStats {
-    /// Adds one error (N). An error that is not finite is ignored here and must be counted by the caller.
+    /// Adds one error (N). A non-finite error is ignored here; the caller must count it.
     pub fn add(&mut self, error_n: &Vector3<f64>) {
         let norm_n = error_n.norm();
         if !norm_n.is_finite() {
@@ -33,13 +31,13 @@ impl ErrorStats {
         self.squares_n2 += before.dot(&(error_n - self.mean_n));
     }
 
-    /// Standard deviation of the error vector about its mean, N (for one axis: of the signed error).
+    /// Returns the standard deviation of the error vector about its mean, N (for one axis: of the signed error).
     pub fn sd_n(&self) -> f64 {
         if self.count == 0 { 0.0 } else { (self.squares_n2 / self.count as f64).max(0.0).sqrt() }
     }
 }
 
-/// Errors of every mode's force before the gates, against the force at the follower at the same instant.
+/// Errors of every mode's force before the gates, relative to the force at the follower at the same instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Accuracy {
     by_mode: [ErrorStats; SLOTS],
@@ -47,8 +45,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Adds one tick of the modes that are computed. A mode without a valid force renders zero, so its error is the whole
-    /// force.
+    /// Adds one tick of the computed modes. A mode without a valid force renders zero, so its error is the whole force.
     pub fn add(&mut self, rendered: &Rendered, computed: ModeSet, truth_n: &Vector3<f64>) {
         for mode in computed.modes() {
             let force_n = rendered.force(mode);
@@ -57,12 +54,11 @@ impl Accuracy {
         }
     }
 
-    /// Errors of `mode`.
     pub const fn of(&self, mode: Mode) -> &ErrorStats {
         &self.by_mode[mode.index()]
     }
 
-    /// Ticks in which `mode` had no valid force.
+    /// Returns the number of ticks in which `mode` had no valid force.
     pub const fn invalid(&self, mode: Mode) -> u64 {
         self.invalid[mode.index()]
     }

@@ -1,18 +1,20 @@
-//! Even spacing for what counts ticks: the deadlines that have passed since the last tick, and values at their times.
+//! Even spacing for code that counts ticks: the deadlines that have passed since the last tick, and values at their
+//! times.
 //!
-//! Identification, rendering and the lag of the follower are difference equations of one period. A tick that wakes late takes its
-//! measurements late; taken for those of its deadline, they would bend velocity and acceleration. So each deadline that has passed
-//! gets the value between the last tick's and this one's, as a lost sample does. A tick at its deadline passes unchanged.
+//! Identification, rendering and the follower's lag are difference equations with one period. A tick that wakes late
+//! measures late; if its measurements were used for the deadline, they would distort velocity and acceleration. Each
+//! deadline that has passed therefore gets the interpolated value between the last tick and this one, like a lost
+//! sample. A tick at its deadline passes unchanged.
 
 use nalgebra::{SVector, Vector3};
 
 use super::Timing;
 
-/// After a longer pause, in periods, only the newest deadline counts: the tick must not become later by catching up, and a pause is
-/// a gap to the identification.
+/// After a longer pause, in periods, only the newest deadline counts: catching up must not delay the tick further, and
+/// the identification treats a pause as a gap.
 const CAUGHT_UP_MAX: u64 = 8;
 
-/// The deadlines since the last tick, s, the newest last.
+/// Returns the deadlines since the last tick, s, the newest last.
 pub fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = f64> + use<> {
     let first_s = timing.now_s - timing.wake_s;
     let newest = timing.missed_now;
@@ -20,14 +22,13 @@ pub fn deadlines(timing: &Timing, period_s: f64) -> impl Iterator<Item = f64> + 
     (oldest..=newest).map(move |k| first_s + k as f64 * period_s)
 }
 
-/// A value of each tick, and between two of them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Between<const N: usize> {
     last: Option<(f64, SVector<f64, N>)>,
 }
 
 impl<const N: usize> Between<N> {
-    /// The value at `t_s` (s), which is not after `now`: the time (s) and the value of this tick.
+    /// Returns the value at `t_s` (s), which is not after `now`: the time (s) and the value of this tick.
     pub fn at(&self, t_s: f64, now: (f64, SVector<f64, N>)) -> SVector<f64, N> {
         let (now_s, value) = now;
         match self.last {
@@ -39,18 +40,17 @@ impl<const N: usize> Between<N> {
         }
     }
 
-    /// Keeps the value of this tick for the next one.
+    /// Stores the value of this tick for the next one.
     pub const fn keep(&mut self, now: (f64, SVector<f64, N>)) {
         self.last = Some(now);
     }
 
-    /// Forgets the last value: the next one does not follow from it.
+    /// Discards the last value, because the next one does not follow from it.
     pub const fn forget(&mut self) {
         self.last = None;
     }
 }
 
-/// Vectors one below the other.
 pub fn stacked<const N: usize, const M: usize>(parts: [&Vector3<f64>; M]) -> SVector<f64, N> {
     SVector::from_fn(|row, _| parts[row / 3][row % 3])
 }

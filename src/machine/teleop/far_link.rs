@@ -1,4 +1,4 @@
-//! The link of a pair: within this process, or from the machine at which the follower's half works.
+//! The link of a pair: within this process, or from the machine that runs the follower's half.
 
 use nima_core::impedance::{Packed, Parcel, Report, SLOTS, Settings};
 
@@ -8,31 +8,30 @@ use crate::{
     rig::Identified,
 };
 
-/// No new parcel from the link for longer than this beyond its delay, s, is a fault. The age gate has removed the force
-/// long before.
+/// If no new packet arrives from the link for longer than this beyond its delay, s, that is a fault. The age gate has
+/// removed the force long before.
 pub(super) const LINK_SILENT_AFTER_S: f64 = 0.1;
-/// Parameters that were not renewed for so long make no force, s: a matched model remembers some seconds, and a renewal comes every
-/// 20 ms.
+/// Parameters that were not renewed for this long are not used for a force, s: a matched model remembers some seconds,
+/// and a renewal arrives every 20 ms.
 const PARAMETERS_OLD_S: f64 = 0.3;
 
-/// The end of a link between two machines: puts the newest parcel together from what comes of it.
+/// The receiving end of a link between two machines: assembles the newest packet from the received messages.
 #[derive(Clone, Debug)]
 pub(super) struct FarLink {
     parcel: Parcel,
-    /// What is known of the identification there.
+    /// Report of the identification there.
     report: Report,
-    /// Ticks from a command to the answer to it.
+    /// Ticks from a command to its answer.
     behind: usize,
-    /// When the parameters of each slot last came, s.
+    /// Time of the last parameters of each slot, s.
     renewed_s: [f64; SLOTS],
     stop: Option<FarStop>,
     source: ForceSource,
-    /// The force in the parcel may be rendered.
+    /// Whether the force in the packet may be rendered.
     is_usable: bool,
 }
 
 impl FarLink {
-    /// Nothing has come.
     const NEW: Self = Self {
         parcel: Parcel::BLANK,
         report: Report::BLANK,
@@ -43,19 +42,19 @@ impl FarLink {
         is_usable: false,
     };
 
-    /// What is known of the identification at the other machine.
+    /// Returns the report of the identification at the other machine.
     pub(super) const fn report(&self) -> &Report {
         &self.report
     }
 
-    /// Puts the force that plausibility admits into the parcel.
+    /// Writes the force that the plausibility check admits into the packet.
     pub(super) const fn admit(&mut self, force: &ForceReport) {
         if self.is_usable {
             self.parcel.force_n = force.tip_n;
         }
     }
 
-    /// The last sample is too old to be rendered.
+    /// Marks the last sample as too old to be rendered.
     pub(super) const fn mute(&mut self) {
         self.is_usable = false;
     }
@@ -75,7 +74,7 @@ impl FarLink {
         {
             *renewed_s = identified.t_s;
         }
-        // Parameters that are lost again and again are no parameters: the force is then reflected as it came.
+        // Parameters that are lost repeatedly are not used: the received force is then reflected.
         for (slot, renewed_s) in self.renewed_s.iter().enumerate() {
             if identified.t_s - renewed_s > PARAMETERS_OLD_S {
                 Packed::forget(slot as u8, parcel);
@@ -101,10 +100,10 @@ impl FarLink {
 }
 
 impl Link for FarLink {
-    /// The delay is measured.
+    /// The delay is measured and cannot be set.
     fn set_delay(&mut self, _delay_s: f64) {}
 
-    /// What is under way is on the network.
+    /// Packets under way are on the network.
     fn clear(&mut self) {}
 
     /// The follower's half sends at the other machine.
@@ -115,15 +114,14 @@ impl Link for FarLink {
     }
 }
 
-/// One of two links: the pair's own, or the far one, once something has come over it.
+/// One of two links: the pair's own, or the far link once a message has arrived over it.
 #[derive(Clone, Debug)]
 pub(super) struct PairLink<L> {
-    /// The link within this process.
     pub(super) own: L,
     far: Box<FarLink>,
     is_far: bool,
     delay_s: f64,
-    /// Age, beyond its delay, of what the own link delivers, s.
+    /// Age of the own link's output beyond its delay, s.
     age_s: f64,
     rate_hz: f64,
 }
@@ -133,27 +131,27 @@ impl<L: Link> PairLink<L> {
         Self { own, far: Box::new(FarLink::NEW), is_far: false, delay_s: 0.0, age_s: 0.0, rate_hz }
     }
 
-    /// The delay over which the force is rendered, s.
+    /// Returns the delay over which the force is rendered, s.
     pub(super) const fn delay_s(&self) -> f64 {
         self.delay_s
     }
 
-    /// The far link, if the follower's half is at another machine.
+    /// Returns the far link, if the follower's half is at another machine.
     pub(super) fn far(&self) -> Option<&FarLink> {
         self.is_far.then_some(&*self.far)
     }
 
-    /// The far link, if the follower's half is at another machine.
+    /// Returns the far link, if the follower's half is at another machine.
     pub(super) fn far_mut(&mut self) -> Option<&mut FarLink> {
         self.is_far.then_some(&mut *self.far)
     }
 
-    /// Why the other machine is stopped.
+    /// Returns the reason why the other machine is stopped.
     pub(super) fn far_stop(&self) -> Option<FarStop> {
         self.far.stop
     }
 
-    /// Turns to the far link, whose delay was measured; returns the delay (s) if it is another one than before.
+    /// Switches to the far link, whose delay was measured; returns the delay (s) if it has changed.
     pub(super) fn turn_far(&mut self, identified: &Identified, settings: &Settings) -> Option<f64> {
         let behind = settings.delay_ticks(identified.delay_s);
         if self.is_far && behind == self.far.behind {
@@ -165,7 +163,7 @@ impl<L: Link> PairLink<L> {
         Some(self.delay_s)
     }
 
-    /// Takes what came over the far link, if it is not withheld; returns the force in it.
+    /// Stores data from the far link, unless they are suppressed; returns the force in them.
     pub(super) fn hear(&mut self, identified: Option<&Identified>) -> ForceReport {
         let far = &mut *self.far;
         if let Some(identified) = identified {
@@ -175,17 +173,19 @@ impl<L: Link> PairLink<L> {
         ForceReport::of_far_end(far.source, far.parcel.force_n)
     }
 
-    /// Ticks since the command was given that was active when the tip was measured; `silent_s`: how long nothing came over a network.
+    /// Returns the ticks since the command was given that was active when the tip was measured; `silent_s`: time
+    /// without a message over the network.
     pub(super) fn behind(&self, silent_s: f64) -> usize {
         self.far.behind + (silent_s * self.rate_hz).round() as usize
     }
 
-    /// Notes the age of what was delivered, s; `None` if nothing was.
+    /// Records the age of the delivered packet, s; `None` without a packet.
     pub(super) fn note_age(&mut self, age_s: Option<f64>) {
         self.age_s = age_s.filter(|_| !self.is_far).unwrap_or(0.0);
     }
 
-    /// Whether what the own link delivers is from before a silence of the devices. An engagement waits for the first new parcel.
+    /// Returns whether the own link's packet is older than a silence of the devices. An engagement waits for the first
+    /// new packet.
     pub(super) fn is_old(&self) -> bool {
         self.age_s > LINK_SILENT_AFTER_S
     }

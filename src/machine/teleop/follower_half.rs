@@ -1,6 +1,7 @@
-//! The follower's half of a pair: readings → tip force → identification → parcels for the link.
+//! The follower's half of a pair: readings → tip force → identification → packets for the link.
 //!
-//! Where the follower is at another machine, this half works there, and what it sends comes over a [`FarLink`](super::far_link::FarLink).
+//! If the follower is at another machine, this half runs there, and its packets arrive over a
+//! [`FarLink`](super::far_link::FarLink).
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Identifier, Parcel, Sample, Settings, SettingsError};
@@ -17,14 +18,12 @@ const NOWHERE: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
 /// The force before the first sample, and when the last one is too old.
 pub(super) const NO_FORCE: ForceReport = ForceReport::none(ForceSource::NoSample, None);
 
-/// The state of the follower's half.
 #[derive(Clone, Debug)]
 pub(super) struct FollowerHalf {
     pub(super) force_path: ForcePath,
-    /// The force at the tip in this tick.
     pub(super) force: ForceReport,
     pub(super) identifier: Identifier,
-    /// Tip (m) and its force (N) of the last tick, for even spacing.
+    /// Tip (m) and its force (N) in the last tick, for even spacing.
     measured: Between<6>,
     period_s: f64,
 }
@@ -41,7 +40,7 @@ impl FollowerHalf {
         })
     }
 
-    /// Identifies at every deadline that has passed, and sends a parcel for each; without a `link` none is sent.
+    /// Identifies at every deadline that has passed, and sends a packet for each; without a `link` none is sent.
     pub(super) fn identify<L: Link>(&mut self, tip_m: &Vector3<f64>, timing: &Timing, mut link: Option<&mut L>) {
         let now = (timing.now_s, stacked([tip_m, &self.force.tip_n]));
         for t_s in deadlines(timing, self.period_s) {
@@ -50,7 +49,7 @@ impl FollowerHalf {
             self.identifier.step(&Sample { t_s, position_m, force_n });
             if let Some(link) = &mut link {
                 let parcel = self.identifier.parcel();
-                // A force that nobody measured may be rendered, and is no judge.
+                // A force that was not measured may be rendered, but must not be used to evaluate modes.
                 let fresh = parcel.fresh && self.force.source.is_known();
                 link.send(&Parcel { fresh, ..*parcel });
             }
@@ -58,8 +57,8 @@ impl FollowerHalf {
         self.measured.keep(now);
     }
 
-    /// A tick without a sample. The identification needs evenly spaced samples: it interpolates the missing one, and no parcel is sent
-    /// for it.
+    /// Handles a tick without a sample. The identification needs evenly spaced samples: it interpolates the missing
+    /// one, and no packet is sent for it.
     pub(super) fn miss(&mut self, timing: &Timing) {
         for t_s in deadlines(timing, self.period_s) {
             self.identifier.step(&Sample { t_s, position_m: NOWHERE, force_n: NOWHERE });

@@ -1,8 +1,8 @@
 //! Computes the force at the tip from the wrist sensor: one step per tick, without allocation.
 //!
-//! First `gravity` removes weight and bias; what remains is the tissue's force plus the trocar's friction, which a
+//! First `gravity` removes weight and bias; the remainder is the tissue's force plus the trocar's friction, which a
 //! trained network removes. All forces are returned in the world frame. If a sample gives no force, [`ForceSource`]
-//! says why.
+//! contains the reason.
 
 use nima_core::{
     calibration::{
@@ -19,32 +19,28 @@ use crate::{
     rig::Sensed,
 };
 
-/// The calibrations of one side.
 #[derive(Clone, Debug, Default)]
 pub struct Calibrations {
     /// Weight of the tool and bias of the wrist sensor.
     pub gravity: Option<GravityModel>,
     /// Network that removes the trocar's friction.
     pub tip_force: Option<TipForce>,
-    /// How good the gravity calibration is, where that is known. Only told: nothing in the loop depends on it.
+    /// Quality of the gravity calibration, if known. Only for display: nothing in the loop depends on it.
     pub gravity_check: Option<GravityCheck>,
 }
 
-/// How good a gravity calibration was when it was made.
+/// Quality of a gravity calibration when it was recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GravityCheck {
-    /// Its verdict.
     pub verdict: Verdict,
-    /// A person uses it in spite of its verdict.
+    /// Whether a person uses it in spite of its verdict.
     pub is_overridden: bool,
     /// Mean error on poses that were not used for the fit, N.
     pub held_out_n: f64,
-    /// Still poses.
     pub poses: usize,
 }
 
 impl GravityCheck {
-    /// From its record.
     pub fn of(record: &GravityRecord) -> Self {
         let GravityRecord { judgement, residuals, poses, .. } = record;
         Self {
@@ -56,10 +52,10 @@ impl GravityCheck {
     }
 }
 
-/// The calibrations as they are applied to each sample.
+/// The calibrations in the form that is applied to each sample.
 #[derive(Clone, Debug, Default)]
 pub struct ForcePath {
-    /// It is not known which sensor is connected, so the calibrations must not be used.
+    /// The connected sensor is unknown, so the calibrations must not be used.
     suspended: bool,
     gravity: Option<Compensator>,
     period_s: f64,
@@ -81,13 +77,12 @@ impl ForcePath {
         }
     }
 
-    /// From now on no force is computed from wrist samples: the sensor was connected or lost, and may be a different
-    /// one.
+    /// Stops computing forces from wrist samples: the sensor was connected or lost, and may be a different one.
     pub const fn suspend(&mut self) {
         self.suspended = true;
     }
 
-    /// Whether a force at the tip can be computed from such a sample.
+    /// Returns whether a force at the tip can be computed from such a sample.
     pub const fn knows(&self, sensed: &Sensed) -> bool {
         match sensed {
             Sensed::AtTip(_) => true,
@@ -96,7 +91,7 @@ impl ForcePath {
         }
     }
 
-    /// The tip force of this sample, taken at `t_s` (s).
+    /// Returns the tip force of this sample, taken at `t_s` (s).
     pub fn step(&mut self, t_s: f64, sensed: &Sensed) -> ForceReport {
         let report = self.report(t_s, sensed);
         // An impossible force from a plausible sample means a wrong calibration, so there is no fallback to the last
@@ -109,7 +104,7 @@ impl ForcePath {
         match sensed {
             Sensed::AtTip(tip_n) => ForceReport { tip_n: *tip_n, ..ForceReport::none(ForceSource::AtTip, None) },
             Sensed::AtWrist(sample) => self.at_wrist(t_s, sample),
-            // Computed at the other machine already.
+            // Already computed at the other machine.
             Sensed::FarEnd(identified) => ForceReport::of_far_end(identified.source, identified.force_n),
         }
     }

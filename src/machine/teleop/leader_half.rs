@@ -1,4 +1,4 @@
-//! The leader's half of a pair: hand → command, parcels and motion → rendering → gates → handle.
+//! The leader's half of a pair: hand → command, packets and motion → rendering → gates → handle.
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use nima_core::{
@@ -20,24 +20,23 @@ use crate::{
 
 /// Distance from the gripper's hinge to the finger, m (omega.7).
 const GRIPPER_ARM_M: f64 = 0.048;
-/// Duration of the force ramp after each engagement, s.
+/// Duration of the force ramp after each engagement, s: a force must not begin as a step in the hand. Chosen.
 const RAMP_S: f64 = 0.2;
 
-/// The state of the leader's half.
 #[derive(Clone, Debug)]
 pub(super) struct LeaderHalf {
     teleoperation: Teleoperation,
     pub(super) hand_eye: HandEye,
-    /// Longest way of the command in a tick, m.
+    /// Maximum travel of the command in a tick, m.
     step_max_m: f64,
     command_m: Option<Vector3<f64>>,
     pub(super) modes: Modes,
     pub(super) renderer: Renderer,
     own_motion: OwnMotion,
     pub(super) tracking: Tracking,
-    /// Command, handle mapped to the tip, and tip (m) of the last tick, for even spacing.
+    /// Command, handle mapped to the tip, and tip (m) in the last tick, for even spacing.
     led: Between<9>,
-    /// What was rendered at the newest deadline.
+    /// Forces rendered at the newest deadline.
     rendered: Rendered,
     pub(super) gates: HandGates,
     /// Force on the handle in the last tick, N, on the axes of its device.
@@ -45,10 +44,9 @@ pub(super) struct LeaderHalf {
     rate_hz: f64,
 }
 
-/// Where the hand leads the instrument.
+/// Command that the hand gives to the instrument.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lead {
-    /// The hand, mapped to the tip.
     pub(super) target: Target,
     /// Command to the follower, m; only while engaged.
     pub(super) tip_m: Option<Vector3<f64>>,
@@ -79,7 +77,7 @@ impl LeaderHalf {
         })
     }
 
-    /// Command to the follower: the hand's position, limited to the follower's maximum speed.
+    /// Returns the command to the follower: the hand's position, limited to the follower's maximum speed.
     pub(super) fn lead(&mut self, seen: &Inputs) -> Lead {
         let target = self.hand_eye.step(&seen.hand);
         if !self.hand_eye.is_engaged() {
@@ -93,19 +91,19 @@ impl LeaderHalf {
         Lead { target, tip_m: self.command_m }
     }
 
-    /// The command that the follower had when the tip was measured, m; `None` where the tip is not measured now.
+    /// Returns the command that was active when the tip was measured, m; `None` without a current measurement.
     pub(super) fn command_behind_m(&self, behind: usize, silent_s: f64) -> Option<Vector3<f64>> {
         if silent_s * self.rate_hz > 1.5 {
             return None;
         }
         match behind {
             0 => self.command_m,
-            // The newest one is of the tick before.
+            // The newest command belongs to the previous tick.
             behind => self.command_m.and_then(|_| self.tracking.command_m(behind - 1)),
         }
     }
 
-    /// Renders at every deadline that has passed, from the motion at that time and the parcel that had come by then.
+    /// Renders at every deadline that has passed, from the motion at that time and the packet that had arrived by then.
     pub(super) fn render<L: Link>(
         &mut self,
         seen: &Inputs,
@@ -132,8 +130,8 @@ impl LeaderHalf {
         self.rendered
     }
 
-    /// The motion from which the force is made: the follower's as the leader can know it (the command, delayed by the
-    /// observed lag), or the handle's, mapped to the tip.
+    /// Returns the motion from which the force is computed: the follower's as the leader can estimate it (the command,
+    /// delayed by the observed lag), or the handle's, mapped to the tip.
     const fn motion_m(&self, follower_m: Vector3<f64>, handle_m: Vector3<f64>) -> Vector3<f64> {
         match self.own_motion {
             OwnMotion::Follower => follower_m,
@@ -141,10 +139,10 @@ impl LeaderHalf {
         }
     }
 
-    /// Hand and tip are joined where both are, so the first command is the present tip position.
+    /// Couples hand and tip at their current positions, so the first command is the current tip position.
     pub(super) fn engage(&mut self, seen: &Inputs, t_s: f64) {
-        // Only here: if the endoscope turns while engaged, the mapping must not turn the motion under the
-        // operator's hand.
+        // Only here: if the endoscope turns while engaged, the mapping must not change the direction of motion under
+        // the operator's hand.
         if let Some(world_from_view) = seen.view.world_from_view() {
             let mapping = self.teleoperation.seen(world_from_view, self.hand_eye.mapping().scale());
             self.hand_eye.set_mapping(mapping);
@@ -154,7 +152,7 @@ impl LeaderHalf {
         self.gates.engaged_s = t_s;
     }
 
-    /// No force, and a follower at rest.
+    /// Resets to no force and a follower at rest.
     pub(super) fn rest(&mut self) {
         self.gates.reset();
         self.command_m = None;
@@ -162,19 +160,17 @@ impl LeaderHalf {
     }
 }
 
-/// The modes that are asked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Modes {
-    /// Those that there is memory for.
+    /// Modes for which memory is allocated.
     pub(super) available: ModeSet,
     pub(super) mode: Mode,
-    /// The mode that is rendered until the new one has something to render.
+    /// The mode that is rendered until the new one has a force.
     before: Option<Mode>,
     pub(super) compares: bool,
 }
 
 impl Modes {
-    /// Those that have to be computed, and no others.
     pub(super) fn computed(&self) -> ModeSet {
         let chosen = ModeSet::only(self.mode);
         if self.compares { self.available } else { self.before.map_or(chosen, |before| chosen.with(before)) }
@@ -187,19 +183,18 @@ impl Modes {
         }
     }
 
-    /// The force of the mode chosen; until it has one, that of the mode before, so that a change of mode takes no force from
-    /// the hand.
+    /// Returns the force of the selected mode; until it has one, the force of the previous mode, so that a change of
+    /// mode does not interrupt the force.
     pub(super) fn force_n(&self, rendered: &Rendered) -> Option<Vector3<f64>> {
         rendered.force(self.mode).or_else(|| self.before.and_then(|before| rendered.force(before)))
     }
 
-    /// Gives the mode before up once the chosen one has a force; returns whether it did.
+    /// Drops the previous mode once the selected one has a force; returns whether it did.
     pub(super) fn settle(&mut self, rendered: &Rendered) -> bool {
         rendered.force(self.mode).and_then(|_| self.before.take()).is_some()
     }
 }
 
-/// The gates in front of handle and gripper.
 #[derive(Clone, Debug)]
 pub(super) struct HandGates {
     pub(super) chain: Chain,
@@ -207,7 +202,7 @@ pub(super) struct HandGates {
     speed: Speed<3>,
     pub(super) hand_speed_m_s: f64,
     engaged_s: f64,
-    /// The governor found that nobody holds the handle: as good as a hand that is reported absent.
+    /// The governor found that the handle is not held: treated like a hand that is reported absent.
     pub(super) hand_is_gone: bool,
 }
 
@@ -230,12 +225,13 @@ impl HandGates {
         self.hand_is_gone = false;
     }
 
-    /// Measures the speed of the handle from where it was read, m, at this time, s.
+    /// Measures the speed of the handle from its position, m, at this time, s.
     pub(super) fn move_hand(&mut self, read_s: f64, hand_m: Vector3<f64>) {
         self.hand_speed_m_s = self.speed.step(read_s, hand_m);
     }
 
-    /// Force on the handle, N, on the axes of the request: what is asked for rises from each engagement on.
+    /// Returns the force on the handle, N, on the axes of the request: the requested force is ramped up after each
+    /// engagement.
     pub(super) fn step(&mut self, request: Request) -> (Vector3<f64>, GateReport) {
         let ramp = ((request.t_s - self.engaged_s) / RAMP_S).clamp(0.0, 1.0);
         let force_n = request.force_n.map(|force_n| force_n * ramp);
@@ -244,7 +240,7 @@ impl HandGates {
         (rendered_n, report)
     }
 
-    /// Force on the gripper from the force on the jaws, through gates of its own, N.
+    /// Returns the force on the gripper from the force on the jaws, N, through separate gates.
     pub(super) fn grip(&mut self, inputs: Option<&Inputs>, now_s: f64, age_s: f64, permitted: bool) -> f64 {
         let opening_rad = inputs.and_then(|inputs| inputs.gripper_rad);
         let grip_n = inputs.and_then(|inputs| inputs.grip_n);
@@ -252,7 +248,7 @@ impl HandGates {
             t_s: now_s,
             force_n: grip_n.map(Vector1::new),
             age_s,
-            // Above the dead band: a gripper that holds something still must keep its force.
+            // Above the dead band, because a gripper that holds an object still must keep its force.
             speed_m_s: 1.0,
             hand_m: opening_rad.map(|rad| Vector1::new(rad * GRIPPER_ARM_M)),
             hand_age_s: 0.0,

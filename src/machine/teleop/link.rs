@@ -1,40 +1,37 @@
-//! The link from follower to leader: a parcel comes out a programmed delay after it went in, exact to one sample.
+//! The link from follower to leader: a packet leaves it a programmed delay after it was sent, exact to one sample.
 //!
-//! Delivery is by the time stamps of the parcels, so a missed tick delays no other parcel.
+//! Delivery is by the time stamps of the packets, so a missed tick does not delay other packets.
 
 use std::fmt::Debug;
 
 use nima_core::impedance::{MAX_DELAY_S, Parcel};
 
-/// Carries parcels from follower to leader. An implementation neither waits nor allocates.
+/// Carries packets from follower to leader. An implementation neither waits nor allocates.
 pub trait Link: Debug + Send {
     /// Changes the programmed delay (s, already a whole number of samples).
     fn set_delay(&mut self, delay_s: f64);
 
-    /// Discards all parcels under way.
     fn clear(&mut self);
 
-    /// Sends one parcel.
     fn send(&mut self, parcel: &Parcel);
 
-    /// The newest parcel that has been under way for the delay at `now_s`; `None` until the first arrives.
+    /// Returns the newest packet that has been under way for the delay at `now_s`; `None` until the first one arrives.
     fn receive(&mut self, now_s: f64) -> Option<&Parcel>;
 }
 
-/// A ring buffer of parcels under way, within one process.
+/// A ring buffer of packets under way, within one process.
 #[derive(Clone, Debug)]
 pub struct ProgrammedLink {
     ring: Vec<Parcel>,
-    /// Number of parcels sent; the newest is at `sent - 1` modulo the length of the ring.
+    /// Number of packets sent; the newest is at `sent - 1` modulo the length of the ring.
     sent: usize,
-    /// Number of parcels delivered.
     delivered: usize,
     delay_s: f64,
     half_period_s: f64,
 }
 
 impl ProgrammedLink {
-    /// An empty link for a loop of this rate (Hz), with room for [`MAX_DELAY_S`].
+    /// Creates an empty link for a loop of this rate (Hz), with room for [`MAX_DELAY_S`].
     pub fn new(rate_hz: f64, delay_s: f64) -> Self {
         let room = (MAX_DELAY_S * rate_hz).ceil() as usize + 2;
         Self { ring: vec![Parcel::BLANK; room], sent: 0, delivered: 0, delay_s, half_period_s: 0.5 / rate_hz }
@@ -50,7 +47,7 @@ impl ProgrammedLink {
 }
 
 impl Link for ProgrammedLink {
-    /// With a longer delay, parcels that were delivered before are delivered again.
+    /// With a longer delay, packets that were already delivered are delivered again.
     fn set_delay(&mut self, delay_s: f64) {
         self.delay_s = delay_s;
         self.delivered = self.oldest_kept();

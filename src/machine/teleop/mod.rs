@@ -3,7 +3,7 @@
 //! Takes [`Inputs`] (m, N, workspace frame) of each side and the time (s); returns [`Outputs`] and a [`Tick`] for each
 //! side. The same code runs on the real and on the virtual clock. Deterministic, without input or output; nothing is
 //! allocated after construction. If a measurement is missing or not finite, the force is zero at once, and a fault
-//! follows if this lasts. A fault of one pair disengages the other one too, so that nobody is left operating with one
+//! follows if this lasts. A fault of one pair disengages the other one too, so that the operator is never left with one
 //! hand by surprise.
 
 mod accuracy;
@@ -34,7 +34,6 @@ pub use pair::{EVENTS_PER_TICK_MAX, Pair};
 pub use timing::Timing;
 pub use tracking::Tracking;
 
-/// The arm pairs of a rig.
 #[derive(Clone, Debug)]
 pub struct Loop<L: Link = ProgrammedLink> {
     /// Boxed, because a pair is too large for a thread's stack.
@@ -42,12 +41,13 @@ pub struct Loop<L: Link = ProgrammedLink> {
     refused: [Option<Event>; REFUSALS_PER_TICK_MAX],
 }
 
-/// Most refused commands reported in one tick: at most two commands are carried out per tick, each by both sides.
+/// Maximum number of refused commands reported in one tick: at most two commands are carried out per tick, each by both
+/// sides.
 const REFUSALS_PER_TICK_MAX: usize = 2 * SIDES;
 
 impl Loop {
-    /// A loop for the sides that have calibrations (which may be empty if the force is measured at the tip), with
-    /// leader and follower in this process. All memory is allocated here.
+    /// Creates a loop for the sides that have calibrations (which may be empty if the force is measured at the tip),
+    /// with leader and follower in this process. All memory is allocated here.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.
@@ -57,10 +57,10 @@ impl Loop {
 }
 
 impl<L: Link> Loop<L> {
-    /// The same with another kind of link; `link` creates one for a rate (Hz) and a delay (s).
+    /// Creates a loop with another kind of link; `link` creates one for a rate (Hz) and a delay (s).
     ///
     /// # Errors
-    /// As [`Loop::new`].
+    /// The errors of [`Loop::new`].
     pub fn over(
         rig: &RigConfig,
         calibrations: &[Option<Calibrations>; SIDES],
@@ -75,37 +75,34 @@ impl<L: Link> Loop<L> {
         Ok(Self { pairs, refused: [None; REFUSALS_PER_TICK_MAX] })
     }
 
-    /// The link of this side.
     pub fn link_mut(&mut self, side: Side) -> Option<&mut L> {
         self.pairs[side.index()].as_mut().map(|pair| pair.link_mut())
     }
 
-    /// The pair of this side.
     pub fn pair(&self, side: Side) -> Option<&Pair<L>> {
         self.pairs[side.index()].as_deref()
     }
 
-    /// The pairs of the rig.
     pub fn pairs(&self) -> impl Iterator<Item = &Pair<L>> {
         self.pairs.iter().flatten().map(Box::as_ref)
     }
 
-    /// What the machine at the other end of a network has to know of each pair.
+    /// Returns the state of each pair for the machine at the other end of a network.
     pub fn bulletins(&self) -> [Option<Bulletin<'_>>; SIDES] {
         self.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| pair.bulletin()))
     }
 
-    /// The pairs of the rig, to be stepped on threads of their own by [`Pair::step`].
+    /// Returns the pairs of the rig, so that [`Pair::step`] can run on a separate thread for each.
     pub fn pairs_mut(&mut self) -> [Option<&mut Box<Pair<L>>>; SIDES] {
         self.pairs.each_mut().map(Option::as_mut)
     }
 
-    /// Events since [`Loop::clear_events`], oldest first for each pair.
+    /// Returns the events since [`Loop::clear_events`], oldest first for each pair.
     pub fn events(&self) -> impl Iterator<Item = &Event> {
         self.refusals().chain(self.pairs().flat_map(Pair::events))
     }
 
-    /// Those of them that no pair tells: commands that were refused.
+    /// Returns the events that belong to no pair: refused commands.
     pub fn refusals(&self) -> impl Iterator<Item = &Event> {
         self.refused.iter().flatten()
     }
@@ -142,8 +139,8 @@ impl<L: Link> Loop<L> {
         }
     }
 
-    /// Whether every pair is idle, knows the force at its tip, and can compute it from these inputs too. Calibrations that were put
-    /// in force in this tick have made none yet.
+    /// Returns whether every pair is idle, has a known force at its tip, and can compute it from these inputs too.
+    /// Calibrations that were activated in this tick have not computed a force yet.
     pub fn is_idle_with(&self, inputs: &[Option<Inputs>; SIDES]) -> bool {
         self.pairs().all(|pair| {
             let inputs = inputs[pair.side().index()].as_ref();
@@ -154,7 +151,6 @@ impl<L: Link> Loop<L> {
         })
     }
 
-    /// Handles the connection or loss of a device.
     pub fn notice(&mut self, event: &DeviceEvent) {
         for pair in self.pairs.iter_mut().flatten().filter(|pair| event.of_side[pair.side().index()]) {
             pair.notice(event);
@@ -168,13 +164,14 @@ impl<L: Link> Loop<L> {
         }
     }
 
-    /// Exchanges the force path of this side with `path`, which then holds the old one. Returns false while the drives
+    /// Swaps the force path of this side with `path`, which then contains the old one. Returns false while the drives
     /// of the side are on.
     pub fn exchange_force_path(&mut self, side: Side, path: &mut ForcePath) -> bool {
         self.pairs[side.index()].as_mut().is_some_and(|pair| pair.exchange_force_path(path))
     }
 
-    /// Whether the loop is to look to its supervisor as if it stood still with its drives on, because that watchdog is tested.
+    /// Returns whether the loop must appear to its supervisor as if it stood still with its drives on, because that
+    /// watchdog is tested.
     pub fn withholds_beat(&self) -> bool {
         self.pairs().any(|pair| pair.withholds(Watchdog::Loop))
     }
@@ -188,7 +185,7 @@ impl<L: Link> Loop<L> {
         }
     }
 
-    /// Executes one tick of each pair. A side without a pair gets [`Outputs::SAFE`] and no tick.
+    /// Executes one tick of each pair. A side without a pair returns [`Outputs::SAFE`] and no tick.
     ///
     /// ```
     /// use nima_machine::{

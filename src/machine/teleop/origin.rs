@@ -1,4 +1,4 @@
-//! What a loop is made of.
+//! Initial data of a loop.
 
 use nima_core::impedance::SettingsError;
 
@@ -8,19 +8,19 @@ use crate::{
     rig::{SIDES, Side},
 };
 
-/// All that a loop is made of. Two loops of the same origin that are fed alike return the same to the last bit.
+/// All initial data of a loop. Two loops with the same origin and the same input return identical results to the last
+/// bit.
 #[derive(Clone, Debug)]
 pub struct Origin {
-    /// The rig.
     pub rig: RigConfig,
     /// Calibrations of each side that has an arm pair.
     pub calibrations: [Option<Calibrations>; SIDES],
-    /// The calibrations are suspended from the start: the sensors are yet to tell who they are.
+    /// The calibrations are suspended from the start, because the sensors have not been identified yet.
     pub suspended: bool,
 }
 
 impl Origin {
-    /// The loop.
+    /// Creates the loop.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.

@@ -1,10 +1,10 @@
 //! One arm pair: handle, arm, force sensor, and the loop between them.
 //!
 //! ```text
-//! FollowerHalf: readings → tip force → identification → parcel      LeaderHalf: parcel, hand → rendering → gates → handle
+//! FollowerHalf: readings → tip force → identification → packet      LeaderHalf: packet, hand → rendering → gates → handle
 //!                  └──── PairLink: a delay in this process, or another machine ────┘
 //! ```
-//! `tick.rs` is one tick from top to bottom; `commands.rs` has what changes the state between two of them.
+//! `tick.rs` is one tick from top to bottom; `commands.rs` contains the changes of state between two ticks.
 
 mod commands;
 mod objections;
@@ -29,14 +29,13 @@ use crate::{
     rig::{Acts, DeviceEvent, Prompt, Side},
 };
 
-/// Most events of one tick; no more are possible.
+/// Maximum number of events in one tick; more are impossible.
 pub const EVENTS_PER_TICK_MAX: usize = 6;
 
-/// The state of an arm pair.
 #[derive(Clone, Debug)]
 pub struct Pair<L: Link = ProgrammedLink> {
     side: Side,
-    /// Settings of the identification; the conversion of a delay to ticks is defined there only.
+    /// Settings of the identification; only they define the conversion of a delay to ticks.
     settings: IdentifierSettings,
     interlock: Interlock<Fault>,
     follower: FollowerHalf,
@@ -47,29 +46,26 @@ pub struct Pair<L: Link = ProgrammedLink> {
     ticks: Ticks,
     screen: ScreenRequests,
     accuracy: Accuracy,
-    /// Whether a ready check has passed; `None` where none is required.
+    /// Whether a ready check has passed; `None` if none is required.
     checked: Option<bool>,
-    /// How often a stop was released.
     releases: u8,
-    /// A watchdog is being fired on purpose.
     watchdog_test: Option<WatchdogTest>,
     events: [Option<Event>; EVENTS_PER_TICK_MAX],
 }
 
-/// What the person at the screen has the rig do.
+/// Requests of the operator at the screen to the rig.
 #[derive(Clone, Copy, Debug)]
 struct ScreenRequests {
     prompt: Prompt,
     guide_m: Option<Vector3<f64>>,
     grip_rad: Option<f64>,
-    /// What was done in a training task.
     acts: Acts,
-    /// Whether the simulated hand has let go of the handle; `None` where the handle is a device, which a person may hold.
+    /// Whether the simulated hand has released the handle; `None` if the handle is a device, which a person may hold.
     lets_go: Option<bool>,
 }
 
 impl Pair {
-    /// The pair of this side, idle, with leader and follower in this process. All memory is allocated here.
+    /// Creates the pair of this side, idle, with leader and follower in this process. All memory is allocated here.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.
@@ -79,10 +75,10 @@ impl Pair {
 }
 
 impl<L: Link> Pair<L> {
-    /// The same with this link.
+    /// Creates the pair with this link.
     ///
     /// # Errors
-    /// As [`Pair::new`].
+    /// The errors of [`Pair::new`].
     pub fn over(rig: &RigConfig, side: Side, calibrations: &Calibrations, link: L) -> Result<Self, SettingsError> {
         let settings = rig.settings();
         let mut this = Self {
@@ -113,7 +109,6 @@ impl<L: Link> Pair<L> {
         Ok(this)
     }
 
-    /// Its side.
     pub const fn side(&self) -> Side {
         self.side
     }
@@ -122,48 +117,42 @@ impl<L: Link> Pair<L> {
         &self.follower.force_path
     }
 
-    /// The force at the tip could be rendered in the last tick. Before the first sample nothing is known against it: an engagement
-    /// waits for that sample.
+    /// Returns whether the force at the tip could be rendered in the last tick. True before the first sample, for which
+    /// an engagement waits.
     pub(super) const fn may_know_force(&self) -> bool {
         self.follower.force.source.is_usable() || self.samples.last.is_none()
     }
 
-    /// Ticks per second.
     pub(super) const fn rate_hz(&self) -> f64 {
         self.settings.rate_hz
     }
 
-    /// The baseline that is computed beside the program's own modes, if the rig starts with one.
+    /// Returns the baseline that is computed together with the program's own modes, if the rig starts with one.
     pub const fn baseline(&self) -> Option<Baseline> {
         self.settings.modes.baseline()
     }
 
-    /// Present state.
     pub const fn state(&self) -> LoopState {
         self.interlock.state()
     }
 
-    /// The follower's end of the identification.
     pub const fn identifier(&self) -> &Identifier {
         &self.follower.identifier
     }
 
-    /// Errors per mode since construction.
     pub const fn accuracy(&self) -> &Accuracy {
         &self.accuracy
     }
 
-    /// Periods missed since construction.
     pub const fn missed(&self) -> u64 {
         self.ticks.missed
     }
 
-    /// The link within this process.
     pub(super) const fn link_mut(&mut self) -> &mut L {
         &mut self.link.own
     }
 
-    /// Events since [`Pair::clear_events`], oldest first.
+    /// Returns the events since [`Pair::clear_events`], oldest first.
     pub fn events(&self) -> impl Iterator<Item = &Event> {
         self.events.iter().flatten()
     }
@@ -179,12 +168,12 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// The wrist sensor was connected, lost or exchanged.
+    /// Handles a wrist sensor that was connected, lost or swapped.
     pub(super) const fn suspend_calibrations(&mut self) {
         self.follower.force_path.suspend();
     }
 
-    /// Exchanges the force path with `path`; refused while drives are on.
+    /// Swaps the force path with `path`; refused while drives are on.
     pub(super) fn exchange_force_path(&mut self, path: &mut ForcePath) -> bool {
         let rests = !self.state().permits().drives;
         if rests {
@@ -201,12 +190,12 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Whether it has a fault of its own, which takes the other pair out of engagement in the next tick.
+    /// Returns whether this pair itself has a fault, which disengages the other pair in the next tick.
     pub fn has_failed(&self) -> bool {
         matches!(self.state(), LoopState::Faulted(fault) if fault != Fault::OtherArm)
     }
 
-    /// What the other machine has to know.
+    /// Returns the state of the pair for the other machine.
     pub(super) fn bulletin(&self) -> Bulletin<'_> {
         Bulletin {
             side: self.side,

@@ -1,47 +1,44 @@
-//! The times of a tick, and how they follow from those of the tick before.
+//! The times of a tick, and their relation to the previous tick.
 
-/// A loop that moves its phase takes periods that are longer by a thousandth; twice that is no drift, as a fraction of a period.
+/// A loop that shifts its phase has periods that are longer by a thousandth; twice that is not a drift, as a fraction
+/// of a period.
 const MOVES_PHASE: f64 = 0.002;
-/// A tick wakes within a period after its deadline, so ticks in a row drift from whole periods by less than this, periods.
+/// A tick wakes within a period after its deadline, so consecutive ticks drift from whole periods by less than this,
+/// periods.
 const DRIFT_MAX: f64 = 2.5;
 
 /// Times measured by the caller: the pair never reads a clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
-    /// Loop time of this tick, s.
     pub now_s: f64,
-    /// How late the tick woke after its deadline, s.
     pub wake_s: f64,
     /// Duration of the work of the previous tick, s.
     pub work_s: f64,
-    /// Time from the arrival of the oldest measurement of the previous tick until its force was given to the device, s;
+    /// Time from the arrival of the oldest measurement of the previous tick until its force was sent to the device, s;
     /// `None` without a measurement.
     pub sample_to_force_s: Option<f64>,
-    /// Periods missed just before this tick.
     pub missed_now: u64,
 }
 
-/// How the time of a tick follows from that of the tick before.
+/// Relation of a tick's time to the previous tick's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Passed {
-    /// By one period and those that were missed.
+    /// Advanced by one period and the missed ones.
     Evenly,
-    /// Forwards by another time.
+    /// Advanced by another time.
     Unevenly,
-    /// It stood still, went back, or is not a number.
+    /// Unchanged, decreased, or NaN.
     Backwards,
 }
 
 /// Counts the ticks of a pair and compares their times.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ticks {
-    /// Executed ticks.
     pub(super) executed: u64,
-    /// Missed periods.
     pub(super) missed: u64,
     last_s: Option<f64>,
     period_s: f64,
-    /// How far recent ticks came late, and early, against whole periods: cumulative sums, periods.
+    /// Lateness and earliness of recent ticks relative to whole periods: cumulative sums, periods.
     late: f64,
     early: f64,
 }
@@ -51,8 +48,9 @@ impl Ticks {
         Self { executed: 0, missed: 0, last_s: None, period_s, late: 0.0, early: 0.0 }
     }
 
-    /// Time must advance by one period plus those missed, and each tick may wake up to a period after its deadline. A clock that runs
-    /// too slowly or too fast keeps within that from tick to tick, but drifts.
+    /// Compares the time with the previous tick. It must advance by one period plus the missed ones, and each tick may
+    /// wake up to a period after its deadline. A clock that runs too slowly or too fast stays within this limit from
+    /// tick to tick, but drifts.
     pub(super) fn pass(&mut self, timing: &Timing) -> Passed {
         self.missed += timing.missed_now;
         let Some(last_s) = self.last_s.replace(timing.now_s) else { return Passed::Evenly };
@@ -67,7 +65,7 @@ impl Ticks {
             self.late = 0.0;
             self.early = 0.0;
         }
-        // A tenth more for a loop that moves its phase.
+        // A tenth more for a loop that shifts its phase.
         if surplus.abs() <= 1.1 && !drifts { Passed::Evenly } else { Passed::Unevenly }
     }
 }
@@ -79,7 +77,7 @@ mod tests {
 
     const PERIOD_S: f64 = 1e-3;
 
-    /// The tick from which on the clock is not even any more, if there is one.
+    /// Returns the first tick at which the clock is no longer even, if there is one.
     fn uneven(ticks: u32, now_s: impl Fn(u32) -> f64) -> Option<u32> {
         let mut counted = Ticks::new(PERIOD_S);
         (0..ticks).find(|tick| counted.pass(&Timing { now_s: now_s(*tick), ..Timing::default() }) != Passed::Evenly)
@@ -93,7 +91,7 @@ mod tests {
         }
         assert!(uneven(20, |tick| 0.5 * f64::from(tick) * PERIOD_S).is_some_and(|tick| tick <= 6));
         assert_eq!(uneven(100_000, |tick| f64::from(tick) * PERIOD_S), None);
-        // A loop that moves its phase, as long as that may ever take.
+        // A loop that shifts its phase for as long as a shift may ever take.
         assert_eq!(uneven(1000, |tick| 1.001 * f64::from(tick) * PERIOD_S), None);
     }
 

@@ -1,24 +1,26 @@
-//! Estimates how far the follower lags behind its command, and from that the follower's present motion as the leader
-//! can know it.
+//! Estimates how far the follower lags behind its command, and from that the follower's current motion as known to the
+//! leader.
 //!
-//! An impedance identified from the follower's motion must be rendered with the follower's motion, but the leader knows
-//! only its own command. The lag is the time shift between command and tip with the least mean square difference over
-//! the last seconds of motion, refined by a parabola through the minimum. Where a network lies between them, the tip is
-//! compared with the commands of one round trip ago, so that the lag is the follower's alone.
+//! An impedance identified from the follower's motion must be rendered with the follower's motion, but the leader has
+//! only its own command. The lag is the time shift between command and tip with the smallest mean square difference
+//! over the last seconds of motion, refined by a parabola through the minimum. With a network between them, the tip is
+//! compared with the commands of one round trip ago, so that the lag excludes the network.
 
 use nalgebra::Vector3;
 use nima_core::impedance::MAX_DELAY_S;
 
-/// Number of time shifts compared.
+/// Number of time shifts compared: with [`LAG_MAX_S`], steps of 2 ms at 1 kHz. Comparing all 128 ticks would cost twice
+/// as much.
 const CANDIDATES: usize = 64;
-/// Longest lag that can be found, s.
+/// Maximum lag that can be found, s.
 const LAG_MAX_S: f64 = 0.128;
-/// Averaging time of the comparison, s of motion.
+/// Averaging time of the comparison, s of motion: long enough for some changes of direction, which a lag shows in.
+/// Chosen.
 const MEMORY_S: f64 = 2.0;
-/// Speed below which the shifts cannot be distinguished, m/s.
+/// Speed below which the shifts cannot be distinguished, m/s, because the noise of the tip's position would decide.
+/// Chosen.
 const MOVING_M_S: f64 = 0.005;
 
-/// Lag of a follower behind its command.
 #[derive(Clone, Debug)]
 pub struct Tracking {
     ring: Vec<Vector3<f64>>,
@@ -57,7 +59,6 @@ impl Tracking {
         self.filled = 0;
     }
 
-    /// The lag in use, in ticks.
     pub const fn lag_samples(&self) -> f64 {
         self.lag_samples
     }
@@ -67,13 +68,14 @@ impl Tracking {
         &self.ring[(self.newest + room - samples.min(self.filled.saturating_sub(1))) % room]
     }
 
-    /// The command of so many ticks ago, m, if it was followed then.
+    /// Returns the command of `ago` ticks ago, m, if it was followed then.
     pub fn command_m(&self, ago: usize) -> Option<Vector3<f64>> {
         (ago < self.filled).then(|| *self.back(ago))
     }
 
-    /// Adds the command (m) of this tick, and the tip (m), measured when the command of `behind` ticks ago was in force; returns the
-    /// estimate of where the present command puts the tip, m: in one place that is where it is now.
+    /// Adds the command (m) of this tick, and the tip (m), measured when the command of `behind` ticks ago was active.
+    /// Returns the estimated position to which the current command moves the tip, m; in one place that is its current
+    /// position.
     pub fn step(&mut self, command_m: &Vector3<f64>, tip_m: &Vector3<f64>, behind: usize) -> Vector3<f64> {
         self.newest = (self.newest + 1) % self.ring.len();
         self.ring[self.newest] = *command_m;
@@ -106,8 +108,8 @@ impl Tracking {
         }
     }
 
-    /// Position of the parabola's minimum through `best` and its neighbours, relative to `best`, in candidates, -0.5 to
-    /// 0.5.
+    /// Returns the position of the parabola's minimum through `best` and its neighbours, relative to `best`, in
+    /// candidates, -0.5 to 0.5.
     fn vertex(&self, best: usize) -> f64 {
         if best == 0 || best + 1 >= CANDIDATES {
             return 0.0;

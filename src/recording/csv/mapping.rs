@@ -2,44 +2,20 @@
 
 use std::collections::BTreeMap;
 
-/// An invalid mapping.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MappingError {
-    /// Not of the form `NAME=COLUMN` or `NAME=COLUMN*SCALE`.
-    #[error("--map {text}: write NAME=COLUMN or NAME=COLUMN*SCALE, for example x=px_mm*0.001")]
+    #[error("--map {text}: not of the form NAME=COLUMN or NAME=COLUMN*SCALE; write for example x=px_mm*0.001")]
     Form { text: String },
-    /// Unknown quantity.
     #[error(
-        "--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy, fz, lx, ly or lz (the leader's own motion), or xyz, fxyz or lxyz with three columns"
+        "--map {text}: there is no quantity \"{name}\"; use t, x, y, z, fx, fy, fz, lx, ly or lz (the leader's motion), or xyz, fxyz or lxyz with three columns"
     )]
-    Name {
-        text: String,
-        /// The part before `=`.
-        name: String,
-    },
-    /// Not three columns where all axes are mapped at once.
-    #[error("--map {text}: \"{name}\" takes three columns, for example {name}=A,B,C*0.001; {found} given")]
-    Three {
-        text: String,
-        /// The part before `=`.
-        name: String,
-        /// Number of columns.
-        found: usize,
-    },
-    /// The scale is zero or not a finite number.
-    #[error("--map {text}: the scale \"{scale}\" is not a number other than zero")]
-    Scale {
-        text: String,
-        /// The part after `*`.
-        scale: String,
-    },
-    /// The quantity is mapped twice.
-    #[error("--map {text}: \"{name}\" is mapped twice")]
-    Twice {
-        text: String,
-        /// The part before `=`.
-        name: String,
-    },
+    Name { text: String, name: String },
+    #[error("--map {text}: \"{name}\" takes three columns, not {found}; write for example {name}=A,B,C*0.001")]
+    Three { text: String, name: String, found: usize },
+    #[error("--map {text}: the scale \"{scale}\" is not a number other than zero; write for example 0.001")]
+    Scale { text: String, scale: String },
+    #[error("--map {text}: \"{name}\" is mapped twice; map each quantity once")]
+    Twice { text: String, name: String },
 }
 
 /// A column and the factor that turns its numbers into SI units.
@@ -50,7 +26,6 @@ pub struct Source {
 }
 
 impl Source {
-    /// Name of the column.
     pub fn column(&self) -> &str {
         &self.column
     }
@@ -61,14 +36,14 @@ impl Source {
     }
 }
 
-/// Mapping from quantities (`x_m`, `fx_n`, `lx_m`, `t_s`, ...) to columns; a quantity that is not mapped has the column of its
+/// Maps quantities (`x_m`, `fx_n`, `lx_m`, `t_s`, ...) to columns. A quantity that is not mapped has the column of its
 /// own name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mapping {
     sources: BTreeMap<&'static str, Source>,
 }
 
-/// Short and full name of every quantity; those with `l` are the leader's own motion.
+/// Short and full name of every quantity; names with `l` are the leader's motion.
 const QUANTITIES: [(&str, &str); 10] = [
     ("t", "t_s"),
     ("x", "x_m"),
@@ -81,11 +56,11 @@ const QUANTITIES: [(&str, &str); 10] = [
     ("ly", "ly_m"),
     ("lz", "lz_m"),
 ];
-/// Names of three quantities at once.
+/// Names of three quantities together.
 const TRIPLES: [(&str, [&str; 3]); 3] =
     [("xyz", ["x_m", "y_m", "z_m"]), ("fxyz", ["fx_n", "fy_n", "fz_n"]), ("lxyz", ["lx_m", "ly_m", "lz_m"])];
 
-/// The full names of what a name on the command line means; none for a name that is not known.
+/// Returns the full names of the quantities that a name on the command line selects; empty for an unknown name.
 fn quantities(name: &str) -> Vec<&'static str> {
     let one = QUANTITIES.iter().find(|(short, full)| *short == name || *full == name).map(|(_, full)| vec![*full]);
     let three = || TRIPLES.iter().find(|(triple, _)| *triple == name).map(|(_, all)| all.to_vec());
@@ -96,8 +71,8 @@ impl Mapping {
     /// Parses any number of texts `NAME=COLUMN[*SCALE]`, or `xyz=A,B,C[*SCALE]` with one scale for all three.
     ///
     /// # Errors
-    /// [`MappingError`] for a text of another form, a quantity that does not exist or is mapped twice, another number of columns than
-    /// three where three are needed, or a scale that is not finite.
+    /// [`MappingError`] for a text of another form, a quantity that does not exist or is mapped twice, a number of
+    /// columns other than three where three are needed, or a scale that is zero or not finite.
     ///
     /// ```
     /// use nima_recording::csv::Mapping;
@@ -147,22 +122,19 @@ impl Mapping {
         Ok(Self { sources })
     }
 
-    /// Whether the quantity is mapped.
     pub fn names(&self, quantity: &str) -> bool {
         self.sources.contains_key(quantity)
     }
 
-    /// The quantities that are mapped, by their full names.
+    /// Returns the mapped quantities by their full names, with their columns.
     pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Source)> {
         self.sources.iter().map(|(quantity, source)| (*quantity, source))
     }
 
-    /// Whether the leader's own motion is mapped.
     pub fn names_leader(&self) -> bool {
         ["lx_m", "ly_m", "lz_m"].into_iter().any(|quantity| self.names(quantity))
     }
 
-    /// The column of a quantity.
     pub fn source(&self, quantity: &str) -> Source {
         self.sources.get(quantity).cloned().unwrap_or_else(|| Source { column: quantity.to_owned(), scale: 1.0 })
     }

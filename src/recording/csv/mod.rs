@@ -1,10 +1,10 @@
 //! Reading recordings of motion and force (CSV).
 //!
-//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and the leader's own
-//! motion can be mapped beside them. SI
-//! units, or any consistent ones (rad and Nm of a lever). A missing column, a field that is not a number and a time
-//! that does not rise are errors that state their position. A row whose force fields are all empty is left out: the force was not known. A file is read as a stream, so it may be a pipe, up to
-//! [`nima_files::TABLE_MAX`] bytes.
+//! Columns: `t_s`; `x_m, y_m, z_m` with `fx_n, fy_n, fz_n`, one to three axes. Other names can be mapped to these, and
+//! the leader's motion can be mapped as well. SI units, or any consistent ones (rad and Nm of a lever). A missing
+//! column, a field that is not a number and a time that does not rise are errors that state their position. A row whose
+//! force fields are all empty is left out, because its force is unknown. A file is read as a stream, so it may be a
+//! pipe, up to [`nima_files::TABLE_MAX`] bytes.
 
 mod mapping;
 mod pairs;
@@ -21,82 +21,72 @@ pub use mapping::{Mapping, MappingError, Source};
 pub use pairs::read_pairs;
 pub use poses::read_poses;
 
-/// Names of the axes.
 pub const AXIS_NAMES: [&str; AXES] = ["x", "y", "z"];
 
-/// Why a recording could not be used: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The file could not be opened.
     #[error("cannot read recording {path}: {reason}")]
     Open {
         path: PathBuf,
-        /// Text of the error (which names its own source).
+        /// Includes the source of the error.
         reason: String,
     },
-    /// A row could not be read.
     #[error("recording {path}: {message}")]
     Row { path: PathBuf, message: String },
-    /// A required column is missing.
     #[error("recording {path} has no column \"{column}\" for {purpose}; its columns are {available}; {cure}")]
     NoColumn {
         path: PathBuf,
         column: String,
         purpose: &'static str,
         available: String,
-        /// What to do: in some files columns can be mapped, in others the names are fixed.
+        /// Remedy: columns of some files can be mapped, other files have fixed names.
         cure: String,
     },
-    /// A quaternion does not have unit length.
     #[error(
         "recording {path}, line {line}: the quaternion has length {length:.3} instead of 1; remove or repair the row"
     )]
     NotARotation {
         path: PathBuf,
-        /// Line of the file, from 1.
+        /// From 1.
         line: u64,
         length: f64,
     },
-    /// A field is not a finite number.
     #[error(
         "recording {path}, line {line}, column \"{column}\": \"{field}\" is not a finite number; remove or repair the row"
     )]
     NotANumber {
         path: PathBuf,
-        /// Line of the file, from 1.
+        /// From 1.
         line: u64,
         column: String,
         field: String,
     },
-    /// Time does not rise.
     #[error(
         "recording {path}, line {line}: time does not rise ({before_s} s, then {now_s} s); sort the rows and remove duplicates"
     )]
     Clock {
         path: PathBuf,
-        /// Line of the file, from 1.
+        /// From 1.
         line: u64,
-        /// Time of the row before, s.
         before_s: f64,
-        /// Time of this row, s.
         now_s: f64,
     },
     #[error("recording {path} has {found} samples, {needed} are needed; record longer or choose a shorter window")]
     TooShort { path: PathBuf, found: usize, needed: usize },
 }
 
-/// Motion and force over time at a nearly constant rate. Rows without a force are left out: it was not known.
+/// Motion and force over time at a nearly constant rate. Rows without a force are left out, because it is unknown.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// The path as given by the user.
+    /// As given by the user.
     pub path: PathBuf,
     /// Which axes it contains, as indices into [`AXIS_NAMES`]; lane `i` of a sample is axis `axes[i]`.
     pub axes: Vec<usize>,
-    /// Rate, Hz: one over the median time step.
+    /// One over the median time step.
     pub rate_hz: f64,
-    /// The samples; lanes beyond `axes.len()` are zero.
+    /// Lanes beyond `axes.len()` are zero.
     pub samples: Vec<Sample>,
-    /// The leader's own motion, sample by sample, mapped to the tip, m; `None` where it was not recorded or not asked for.
+    /// The leader's motion, sample by sample, mapped to the tip, m; `None` if it was not recorded or not requested.
     pub leader_m: Option<Vec<Vector3<f64>>>,
 }
 
@@ -165,7 +155,7 @@ impl Recording {
         Ok(Self { leader_m: has_leader.then_some(leader_m), ..recording })
     }
 
-    /// The same of samples that were read already; their times rise.
+    /// Makes a recording of samples whose times rise.
     ///
     /// # Errors
     /// [`RecordingError::TooShort`] for fewer than three.
@@ -176,12 +166,13 @@ impl Recording {
     }
 }
 
-/// What to do about a missing column that can be mapped.
+/// Returns what to do about a missing column that can be mapped.
 fn cure(key: &str) -> String {
     format!("name another with --map {key}=COLUMN")
 }
 
-/// The axes with a position or a force, or a leader's motion that is mapped; if only one of them exists, the other is reported as missing.
+/// Returns the axes with a position, a force or a mapped leader's motion. If an axis has only a position or only a
+/// force, the other is reported as missing.
 fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
     let has = |name: &str| mapping.names(name) || table.has(mapping.source(name).column());
     let found: Vec<usize> = (0..AXES)
@@ -190,12 +181,12 @@ fn axes(table: &Table, mapping: &Mapping) -> Vec<usize> {
             has(&format!("{name}_m")) || has(&format!("f{name}_n")) || mapping.names(&format!("l{name}_m"))
         })
         .collect();
-    // If none exists, use x: the error then lists the columns that exist.
+    // If no axis exists, use x: the error then lists the columns that exist.
     if found.is_empty() { vec![0] } else { found }
 }
 
-/// The rate of these times (s): one over the median time step, rounded to eight digits so that steps of 0.001 s give 1000 Hz. `None` for
-/// fewer than three.
+/// Returns the rate of these times (s): one over the median time step, rounded to eight digits so that steps of 0.001 s
+/// give 1000 Hz. `None` for fewer than three times.
 pub fn rate_hz(times_s: impl Iterator<Item = f64>) -> Option<f64> {
     let mut before_s = None;
     let mut steps: Vec<f64> =

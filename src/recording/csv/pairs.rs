@@ -6,12 +6,12 @@ use nima_core::calibration::correspondence::Pair;
 
 use super::{RecordingError, table::Table};
 
-/// What to do about a missing column.
+/// Remedy for a missing column.
 const CURE: &str = "name the column so";
 
-/// Reads `f1x_n, f1y_n, f1z_n, f2x_n, f2y_n, f2z_n` (N) and, if the columns exist, `qw, qx, qy, qz` (`s1_from_c`, which
-/// is normalised; one further than 1 % from unit length is refused). Other columns are ignored. Returns the pairs in
-/// the order of the rows.
+/// Reads `f1x_n, f1y_n, f1z_n, f2x_n, f2y_n, f2z_n` (N) and, if the columns exist, `qw, qx, qy, qz` (`s1_from_c`). The
+/// quaternion is normalised, and refused if it is more than 1 % from unit length. Other columns are ignored. Returns
+/// the pairs in the order of the rows.
 ///
 /// # Errors
 /// [`RecordingError`] for a file that cannot be read, a missing column, or a row that is not valid numbers or not a

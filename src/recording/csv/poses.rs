@@ -2,7 +2,7 @@
 //!
 //! Columns `fx_n, fy_n, fz_n`, optionally `tx_nm, ty_nm, tz_nm` (`s1`), and either `ax, ay, az` (m/s^2, `imu`) or `qw,
 //! qx, qy, qz` (`world_from_s1`, base from sensor). If both exist, the accelerometer is used. A quaternion is
-//! normalised; one further than 1 % from unit length is refused with its line.
+//! normalised; if it is more than 1 % from unit length, it is refused with its line.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use super::{
     table::{Column, Table},
 };
 
-/// What to do about a missing column.
+/// Remedy for a missing column.
 const CURE: &str = "give fx_n,fy_n,fz_n, optionally tx_nm,ty_nm,tz_nm, and ax,ay,az or qw,qx,qy,qz";
 
 /// Reads still poses in the order of their rows.
@@ -60,7 +60,6 @@ pub fn read_poses(path: &Path) -> Result<Vec<Pose>, RecordingError> {
     })
 }
 
-/// Columns of the orientation.
 enum Columns {
     Arm([Column; 4]),
     Imu([Column; 3]),

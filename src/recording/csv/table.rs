@@ -11,7 +11,7 @@ use super::{Mapping, RecordingError, mapping::Source};
 /// Largest deviation of a quaternion from unit length that counts as rounding.
 const UNIT_TOLERANCE: f64 = 0.01;
 
-/// A file being read; columns are looked up before the rows are read.
+/// A file that is being read; columns are looked up before the rows are read.
 pub(super) struct Table {
     path: PathBuf,
     header: StringRecord,
@@ -19,7 +19,6 @@ pub(super) struct Table {
     row: StringRecord,
 }
 
-/// A column found in a table.
 pub(super) struct Column {
     index: usize,
     name: String,
@@ -41,7 +40,6 @@ impl Table {
         self.reader.read_record(&mut self.row).map_err(wrong)
     }
 
-    /// Applies `take` to each row.
     pub(super) fn rows<T>(
         &mut self,
         take: impl Fn(&Self) -> Result<T, RecordingError>,
@@ -61,7 +59,7 @@ impl Table {
         self.header.iter().any(|name| name == column)
     }
 
-    /// The column that a mapping names; `cure` says what to do if it is missing.
+    /// Finds the column that a mapping names; `cure` is the remedy if it is missing.
     pub(super) fn column(&self, source: &Source, purpose: &'static str, cure: &str) -> Result<Column, RecordingError> {
         let name = source.column().to_owned();
         match self.header.iter().position(|found| found == name) {
@@ -76,7 +74,7 @@ impl Table {
         }
     }
 
-    /// Columns of fixed names.
+    /// Finds columns of fixed names.
     pub(super) fn columns<const N: usize>(
         &self,
         names: [&str; N],
@@ -89,12 +87,13 @@ impl Table {
         found?.try_into().map_err(|_| unreachable!("as many columns as names"))
     }
 
-    /// The vector in three columns.
+    /// Returns the vector in three columns.
     pub(super) fn vector(&self, [x, y, z]: &[Column; 3]) -> Result<Vector3<f64>, RecordingError> {
         Ok(Vector3::new(self.number(x)?, self.number(y)?, self.number(z)?))
     }
 
-    /// The rotation in four columns `w, x, y, z`, normalised; one further than 1 % from unit length is refused.
+    /// Returns the rotation in four columns `w, x, y, z`, normalised. A quaternion more than 1 % from unit length is
+    /// refused.
     pub(super) fn rotation(&self, [w, x, y, z]: &[Column; 4]) -> Result<UnitQuaternion<f64>, RecordingError> {
         let number = |column| self.number(column);
         let quaternion = Quaternion::new(number(w)?, number(x)?, number(y)?, number(z)?);
@@ -105,7 +104,6 @@ impl Table {
         Ok(UnitQuaternion::from_quaternion(quaternion))
     }
 
-    /// Whether the field has nothing in it.
     pub(super) fn is_empty(&self, column: &Column) -> bool {
         self.row.get(column.index).is_none_or(str::is_empty)
     }

@@ -1,7 +1,9 @@
-//! Writes a session of made-up signals as a recording of a rig would be: two arms with 150 signals each at 1 kHz, frames, arrows, a log.
+//! Writes a session of invented signals in the form of a rig's recording: two arms with 150 signals each at 1 kHz,
+//! frames, arrows, a log.
 //!
-//! `session FILE.mcap [SECONDS]` writes the file and looks at random ticks of it; beside it `FILE.csv`, `FILE.poses.csv` and `FILE.log.csv` with what was meant, for the comparison with what others
-//! read. Prints bytes and times. Up to one second everything is in the tables, later only the file goes on.
+//! `session FILE.mcap [SECONDS]` writes the file and reads random ticks of it. It also writes the expected contents to
+//! `FILE.csv`, `FILE.poses.csv` and `FILE.log.csv`, for comparison with other readers, and prints bytes and times. The
+//! tables contain the first second only.
 
 use std::{
     collections::BTreeMap,
@@ -27,7 +29,7 @@ use prost::Message as _;
 
 const SIGNALS: usize = 150;
 const TICK_NS: u64 = 1_000_000;
-/// Not zero, as no clock of a session is.
+/// Not zero, because no clock of a session is.
 const BEGIN_NS: u64 = 1_790_000_000_000_000_000;
 const IN_TABLES: u64 = 1_000;
 
@@ -74,7 +76,7 @@ fn write_and_look() -> Result<(), Box<dyn Error>> {
     look(path, seconds)
 }
 
-/// Opens the file and reads single ticks anywhere in it.
+/// Opens the file and reads single ticks at random positions.
 fn look(path: &Path, seconds: u64) -> Result<(), Box<dyn Error>> {
     let begin = Instant::now();
     let reader = Reader::open(path)?;
@@ -86,14 +88,15 @@ fn look(path: &Path, seconds: u64) -> Result<(), Box<dyn Error>> {
         let begin = Instant::now();
         let found = reader.messages(&["/left/signals"], at..at + 1).collect::<Result<Vec<_>, _>>()?;
         times.push(begin.elapsed());
-        assert!(found.len() == 1 && found[0].log_time_ns() == at, "the tick is there");
+        assert!(found.len() == 1 && found[0].log_time_ns() == at, "this tick must exist");
     }
     times.sort_unstable();
     println!("opened in {opened:.1?}; a tick anywhere: median {:.1?}, longest {:.1?}", times[50], times[99]);
     Ok(())
 }
 
-/// A third holds still for long, a third comes in steps of a device, a third is noisy in every bit.
+/// One third of the signals holds still for long, one third changes in steps of a device, one third is noisy in every
+/// bit.
 fn signals(arm: u64, tick: u64) -> [f64; SIGNALS] {
     let t = tick as f64 * 1e-3;
     std::array::from_fn(|signal| {
@@ -154,7 +157,7 @@ impl Session {
             self.writer.message(*channel, time_ns, encoder.encode(time_ns, &[], &[], values)?)?;
         }
         self.writer.message(self.own, time_ns, &tick.to_le_bytes())?;
-        // As often as a screen is drawn.
+        // About the refresh rate of a screen.
         if tick.is_multiple_of(20) {
             let frames = frames(time_ns, &values[0]);
             self.writer.message(self.frames, time_ns, &frames.encode_to_vec())?;
@@ -219,7 +222,7 @@ fn line(tick: u64, time_ns: u64) -> Log {
     }
 }
 
-/// What was meant, as text.
+/// The expected contents, as text.
 struct Tables {
     signals: BufWriter<File>,
     poses: BufWriter<File>,
@@ -250,7 +253,7 @@ impl Tables {
     }
 }
 
-/// Of this thread so far.
+/// Processor time of this thread so far.
 fn processor_time() -> Result<Duration, Box<dyn Error>> {
     let told = fs::read_to_string("/proc/thread-self/schedstat")?;
     Ok(Duration::from_nanos(told.split(' ').next().unwrap_or_default().parse()?))

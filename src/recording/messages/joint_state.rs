@@ -2,7 +2,7 @@
 
 use crate::session::Encoding;
 
-/// What the message looks like, in the language of ROS 2: the message itself, then those that it is made of.
+/// Definition of the message in the language of ROS 2: first the message itself, then the messages that it contains.
 const SCHEMA: &str = "\
 std_msgs/Header header
 string[] name
@@ -19,12 +19,12 @@ int32 sec
 uint32 nanosec
 ";
 
-/// Little-endian CDR, without options. Numbers are aligned from behind it.
+/// Little-endian CDR without options. Alignment is counted from the end of this header.
 pub(super) const REPRESENTATION: [u8; 4] = [0, 1, 0, 0];
-/// Where the time stands.
+/// Offset of the time.
 const STAMP: usize = REPRESENTATION.len();
 
-/// Encodes the messages of one channel, whose names stay the same: they are encoded once.
+/// Encodes the messages of one channel. Their names never change, so they are encoded once.
 ///
 /// ```
 /// use nima_recording::messages::JointStateEncoder;
@@ -37,24 +37,22 @@ const STAMP: usize = REPRESENTATION.len();
 /// ```
 #[derive(Clone, Debug)]
 pub struct JointStateEncoder {
-    /// A message; behind `fixed` it is made anew each time.
+    /// The current message; the part after `fixed` is rebuilt for every message.
     message: Vec<u8>,
     fixed: usize,
     names: usize,
 }
 
-/// A list of values that fits neither the names nor is empty.
+/// A list of values whose length differs from the number of names and is not zero.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
-#[error("{values} values for {names} names; give one for each name, or none")]
+#[error("JointState message has {values} values for {names} names; give one value for each name, or none")]
 pub struct WrongLength {
-    /// Values given.
     pub values: usize,
-    /// Names of the channel.
     pub names: usize,
 }
 
 impl JointStateEncoder {
-    /// For values of these names, in the coordinates of `frame`.
+    /// Makes an encoder for values of these names, in the coordinates of `frame`.
     pub fn new(frame: &str, names: &[&str]) -> Self {
         let mut message = REPRESENTATION.to_vec();
         message.extend_from_slice(&[0; 8]);
@@ -66,7 +64,7 @@ impl JointStateEncoder {
         Self { fixed: message.len(), message, names: names.len() }
     }
 
-    /// How a reader is to understand the channel.
+    /// Returns the encoding of the channel, for its readers.
     pub fn encoding() -> Encoding {
         Encoding {
             schema: "sensor_msgs/msg/JointState".into(),
@@ -76,10 +74,11 @@ impl JointStateEncoder {
         }
     }
 
-    /// A message of this time: for each list a value for each name, or none. The bytes hold until the next call.
+    /// Encodes a message of this time. Each list has one value for each name, or is empty. The bytes are valid until
+    /// the next call.
     ///
     /// # Errors
-    /// A list of another length.
+    /// [`WrongLength`] for a list of another length.
     pub fn encode(
         &mut self,
         time_ns: u64,
@@ -92,7 +91,7 @@ impl JointStateEncoder {
             return Err(WrongLength { values: list.len(), names: self.names });
         }
         let second = 1_000_000_000;
-        // Until 2038.
+        // The format's seconds end in 2038.
         let seconds = i32::try_from(time_ns / second).unwrap_or(i32::MAX);
         self.message[STAMP..STAMP + 4].copy_from_slice(&seconds.to_le_bytes());
         self.message[STAMP + 4..STAMP + 8].copy_from_slice(&((time_ns % second) as u32).to_le_bytes());
@@ -120,7 +119,7 @@ fn put_count(message: &mut Vec<u8>, count: usize) {
     message.extend_from_slice(&(count as u32).to_le_bytes());
 }
 
-/// With a zero byte behind it, which counts.
+/// Appends a text with its terminating zero byte, which counts towards its length.
 fn put_text(message: &mut Vec<u8>, text: &str) {
     put_count(message, text.len() + 1);
     message.extend_from_slice(text.as_bytes());
@@ -144,7 +143,7 @@ mod tests {
             &[2, 0, 0, 0], b"a\0", &[0, 0],
             &[6, 0, 0, 0], b"force\0", &[0, 0],
             &[0; 4], &[0; 4],
-            // 52 bytes so far: four more up to a multiple of eight, counted from behind the first four.
+            // 52 bytes so far: four more up to a multiple of eight, counted from the end of the first four.
             &[2, 0, 0, 0],
             &1_f64.to_le_bytes(), &(-2_f64).to_le_bytes(),
         ].concat();

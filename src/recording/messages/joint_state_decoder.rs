@@ -1,11 +1,11 @@
-//! Reads `sensor_msgs/msg/JointState` as [`JointStateEncoder`](super::JointStateEncoder) writes it.
+//! Reads `sensor_msgs/msg/JointState` as written by [`JointStateEncoder`](super::JointStateEncoder).
 
 use super::joint_state::REPRESENTATION;
 
-/// Where the frame and the names begin: behind the representation and the time.
+/// Offset of the frame and the names, after the representation header and the time.
 const FIXED: usize = 12;
 
-/// Reads the messages of one channel. The names are read once, as long as they stay the same.
+/// Reads the messages of one channel. The names are parsed only when they change.
 ///
 /// ```
 /// use nima_recording::messages::{JointStateDecoder, JointStateEncoder};
@@ -26,22 +26,22 @@ pub struct JointStateDecoder {
 }
 
 impl JointStateDecoder {
-    /// Names of the values.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The values of the last message, one for each name: its positions, or where there are none its efforts.
+    /// Returns the values of the last message, one for each name: its positions, or its efforts if it has no positions.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Place of the value with this name.
+    /// Returns the index of the value with this name.
     pub fn place(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|known| known == name)
     }
 
-    /// Reads a message; false if it is none, or has other lists than those of this program. The values are then empty.
+    /// Reads a message. Returns false, and leaves the values empty, if the bytes are not a message or have other lists
+    /// than this program writes.
     pub fn decode(&mut self, message: &[u8]) -> bool {
         self.values.clear();
         self.read(message).is_some()

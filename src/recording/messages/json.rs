@@ -1,8 +1,8 @@
-//! Messages in JSON, with a JSON schema: for what has more kinds than a fixed form holds.
+//! Messages in JSON with a JSON schema, for data with more variants than a fixed form can hold.
 
 use crate::session::Encoding;
 
-/// How a reader is to understand a channel of JSON messages of this name and JSON schema.
+/// Returns the encoding of a channel of JSON messages with this name and JSON schema.
 ///
 /// ```
 /// use nima_recording::messages::json_encoding;

@@ -1,8 +1,9 @@
-//! The messages in a session that other programs know: their bytes and their descriptions.
+//! The messages in a session that other programs can read: their bytes and their descriptions.
 //!
-//! Foxglove, `PlotJuggler` and Rerun show them with no set-up. A [`JointState`](JointStateEncoder) is plotted by the names in it,
-//! [`foxglove::FrameTransforms`] place what stands where, [`foxglove::Log`] is text with a level, [`foxglove::SceneUpdate`] has
-//! arrows, and JSON has its own schema. The time in a message is that of its sample, as the time of the record is.
+//! Foxglove, `PlotJuggler` and Rerun show them without configuration. A [`JointState`](JointStateEncoder) is plotted by
+//! the names in it, [`foxglove::FrameTransforms`] give the poses of frames, [`foxglove::Log`] is text with a level,
+//! [`foxglove::SceneUpdate`] has arrows, and JSON has its own schema. The time in a message, like that of its record,
+//! is the time of its sample.
 
 pub mod foxglove;
 mod joint_state;

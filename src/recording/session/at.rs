@@ -1,10 +1,10 @@
-//! Reading and writing at a place of a file, whatever its cursor.
+//! Reading and writing at a position of a file, independent of its cursor.
 
 use std::{fs::File, io, path::Path};
 #[cfg(windows)]
 use std::{fs::OpenOptions, os::windows::fs::OpenOptionsExt as _, time::Duration};
 
-// Of the Windows API.
+// Constants of the Windows API.
 #[cfg(windows)]
 const SHARE_READ: u32 = 1;
 #[cfg(windows)]
@@ -58,7 +58,8 @@ pub(super) fn read_exact(file: &File, mut bytes: &mut [u8], mut at: u64) -> io::
     Ok(())
 }
 
-/// Locks a file for as long as it is open. Only where locks do not keep others from reading; a file system without them does without.
+/// Locks a file for as long as it is open, on systems where a lock does not keep others from reading. Does nothing on a
+/// file system without locks.
 #[cfg(unix)]
 pub(super) fn lock(file: &File) {
     file.try_lock().ok();
@@ -67,13 +68,13 @@ pub(super) fn lock(file: &File) {
 #[cfg(not(unix))]
 pub(super) fn lock(_: &File) {}
 
-/// What else shows that the file of this name is being written, for as long as it is kept. A lock keeps others from reading on Windows: there it is
-/// a second handle, beside which nobody deletes or renames the file.
+/// A second sign, kept while the file is written, that a process writes it. On Windows a lock would keep others from
+/// reading; there the guard is a second handle, which prevents deleting and renaming the file.
 #[cfg(windows)]
 pub(super) fn guard(path: &Path) -> Option<File> {
     let mut open = OpenOptions::new();
     open.read(true).share_mode(SHARE_READ | SHARE_WRITE);
-    // Another program may just be looking whether the file is being written.
+    // Another program may be checking the guard at this moment.
     (0..GUARD_ATTEMPTS).find_map(|attempt| {
         std::thread::sleep(GUARD_NAP * attempt);
         open.open(path).ok()
@@ -85,7 +86,7 @@ pub(super) const fn guard(_: &Path) -> Option<File> {
     None
 }
 
-/// Whether somebody holds the lock of this file.
+/// Whether a process holds the lock of this file.
 #[cfg(unix)]
 pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
     match File::open(path)?.try_lock_shared() {
@@ -95,7 +96,7 @@ pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Whether somebody holds its guard: then it cannot be opened to be deleted.
+/// Whether a process holds the file's guard: then it cannot be opened for deletion.
 #[cfg(windows)]
 pub(super) fn is_locked(path: &Path) -> io::Result<bool> {
     match OpenOptions::new().access_mode(DELETE).share_mode(SHARE_READ | SHARE_WRITE | SHARE_DELETE).open(path) {
@@ -110,13 +111,13 @@ pub(super) fn is_locked(_: &Path) -> io::Result<bool> {
     Ok(false)
 }
 
-/// Whether the file has been deleted while it is open: what is written now is lost as soon as it is closed.
+/// Whether the file has been deleted while it is open: data written from now on are lost as soon as it is closed.
 #[cfg(unix)]
 pub(super) fn is_deleted(file: &File) -> io::Result<bool> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0)
 }
 
-/// On Windows its guard keeps it.
+/// On Windows the guard prevents it.
 #[cfg(not(unix))]
 pub(super) fn is_deleted(_: &File) -> io::Result<bool> {
     Ok(false)

@@ -1,4 +1,4 @@
-//! One chunk while it is being filled: messages with an index for each channel, compressed when it is closed.
+//! One chunk while it is being filled: messages with an index for each channel, compressed when the chunk is closed.
 
 use std::io::{self, Write as _};
 
@@ -6,7 +6,7 @@ use lz4_flex::frame::{BlockMode, BlockSize, FrameEncoder, FrameInfo};
 
 use super::format::{self, HEAD, Put as _, kind, record};
 
-/// The name of the compression in the file, and of none.
+/// The names of the compressions in the file: LZ4, and none.
 pub(super) const LZ4: &str = "lz4";
 const PLAIN: &str = "";
 
@@ -14,19 +14,18 @@ pub(super) struct Chunk {
     compression: &'static str,
     /// The records.
     raw: Vec<u8>,
-    /// Time and place of each message, by the number of its channel.
+    /// Time and offset of each message, by channel number.
     index: Vec<Vec<u8>>,
     times_ns: Option<(u64, u64)>,
     messages: u64,
 }
 
-/// A chunk as it stands in the file, with its message indexes behind it.
+/// A chunk as stored in the file, followed by its message indexes.
 pub(super) struct Closed {
     pub(super) bytes: Vec<u8>,
     compression: &'static str,
-    /// Bytes of the chunk's own record.
     chunk: usize,
-    /// Channel, where its index begins in `bytes`, messages.
+    /// Channel, offset of its index in `bytes`, number of messages.
     pub(super) indexes: Vec<(u16, usize, u64)>,
     compressed: u64,
     uncompressed: u64,
@@ -39,7 +38,7 @@ impl Chunk {
         Self::of(LZ4)
     }
 
-    /// For what is compressed already.
+    /// A chunk for data that are compressed already.
     pub(super) const fn plain() -> Self {
         Self::of(PLAIN)
     }
@@ -48,7 +47,7 @@ impl Chunk {
         Self { compression, raw: Vec::new(), index: Vec::new(), times_ns: None, messages: 0 }
     }
 
-    /// A schema or a channel.
+    /// Appends a schema or a channel.
     pub(super) fn put_record(&mut self, record: &[u8]) {
         self.raw.extend_from_slice(record);
     }
@@ -70,12 +69,12 @@ impl Chunk {
         self.raw.len()
     }
 
-    /// How long it would be with a message of this time, ns.
+    /// Returns the time span of the chunk with a message of this time added, ns.
     pub(super) fn span_ns(&self, time_ns: u64) -> u64 {
         self.times_ns.map_or(0, |(first, last)| last.max(time_ns) - first.min(time_ns))
     }
 
-    /// The finished bytes; the chunk is empty again and keeps its memory.
+    /// Returns the finished bytes; the chunk is then empty again and keeps its memory.
     pub(super) fn close(&mut self) -> io::Result<Closed> {
         let (first, last) = self.times_ns.unwrap_or_default();
         let mut bytes = Vec::with_capacity(self.raw.len() / 3 + 1024);
@@ -114,8 +113,8 @@ impl Chunk {
         Ok(Closed { bytes, compression, chunk, indexes, compressed, uncompressed, times_ns, messages })
     }
 
-    /// In the smallest blocks, linked, which make the file 0.1 % larger than those of 1 MB: whoever reads it takes buffers of three blocks for
-    /// each chunk, and a report of ten minutes spent two thirds of its time on their pages.
+    /// Uses the smallest, linked blocks, although they make the file 0.1 % larger than blocks of 1 MB: a reader
+    /// allocates three blocks for each chunk, and a report of ten minutes spent two thirds of its time on their pages.
     fn compress(&self, into: Vec<u8>) -> io::Result<Vec<u8>> {
         let info = FrameInfo::new().block_size(BlockSize::Max64KB).block_mode(BlockMode::Linked);
         let mut encoder = FrameEncoder::with_frame_info(info, into);
@@ -125,7 +124,7 @@ impl Chunk {
 }
 
 impl Closed {
-    /// Its entry in the summary, where it stands at `at`.
+    /// Returns the entry for the summary if the chunk is at offset `at`.
     pub(super) fn index(&self, at: u64) -> Vec<u8> {
         let (first, last) = self.times_ns.unwrap_or_default();
         let mut index = Vec::new();

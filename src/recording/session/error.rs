@@ -1,26 +1,22 @@
-//! Why a session file could not be written or read: what, where, and what to do, in one line.
+//! Errors of writing and reading a session file: what failed, where, and what to do, in one line.
 
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-/// Why a session file could not be written. Everything that was written before stays readable.
+/// Why a session file could not be written. Everything written earlier stays readable.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The file could not be created.
     #[error("cannot create session {path}: {reason}; {cure}")]
     Create { path: PathBuf, reason: String, kind: io::ErrorKind, cure: &'static str },
-    /// A chunk or its index could not be written.
-    #[error("cannot go on writing session {path}: {reason}; {cure}; what was written before stays readable")]
+    #[error("cannot continue writing session {path}: {reason}; {cure} (the part already written stays readable)")]
     Write { path: PathBuf, reason: String, kind: io::ErrorKind, cure: &'static str },
-    /// Somebody deleted the file, or its folder.
-    #[error("session {path} has been deleted while it was written; record to another file")]
+    #[error("session {path} was deleted while it was being written; record to another file")]
     Deleted { path: PathBuf },
-    #[error("session {path} has no channel {number}: it is a channel of another file")]
+    #[error("session {path} has no channel {number}: the channel belongs to another file; use one of this file")]
     Channel { path: PathBuf, number: u16 },
-    /// More than the format can hold.
-    #[error("session {path} cannot take this: {what}, at most {most} are possible")]
+    #[error("session {path} cannot hold {what}: the limit is {most}; record to another file")]
     TooMuch { path: PathBuf, what: &'static str, most: u64 },
 }
 
@@ -38,7 +34,7 @@ impl WriteError {
         Self::Write { path: path.to_owned(), reason: error.to_string(), kind: error.kind(), cure: cure(error.kind()) }
     }
 
-    /// What the system said, where it was the system.
+    /// Returns the kind of I/O error, if the system caused this one.
     pub fn kind(&self) -> Option<io::ErrorKind> {
         match self {
             Self::Create { kind, .. } | Self::Write { kind, .. } => Some(*kind),
@@ -57,23 +53,20 @@ fn cure(kind: io::ErrorKind) -> &'static str {
     }
 }
 
-/// Why a session file could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// It could not be opened or read.
     #[error("cannot read session {path}: {reason}")]
     Open { path: PathBuf, reason: String },
-    #[error("session {path} is empty: nothing was recorded in it")]
+    #[error("session {path} is empty: nothing was recorded; choose another file")]
     Empty { path: PathBuf },
-    #[error("session {path} ends within its first bytes: nothing was recorded in it")]
+    #[error("session {path} ends within its first bytes: nothing was recorded; choose another file")]
     Cut { path: PathBuf },
-    #[error("{path} is not a session: it is not in the format MCAP; is it the right file?")]
+    #[error("{path} is not a session: it is not in MCAP format; choose another file")]
     Foreign { path: PathBuf },
     #[error(
-        "session {path} is in version {version} of the format MCAP, only version 0 is read; it needs a newer program"
+        "session {path} uses version {version} of the MCAP format, but only version 0 can be read; use a newer program"
     )]
     Version { path: PathBuf, version: String },
-    /// A part of it does not say what it should.
     #[error("session {path} is damaged at byte {at}: {what}")]
     Damaged { path: PathBuf, at: u64, what: String },
 }

@@ -1,17 +1,17 @@
-//! The records of MCAP, as bytes: <https://mcap.dev/spec>. Little endian; a record is its kind, its length and its content.
+//! The records of MCAP as bytes: <https://mcap.dev/spec>. Little endian; a record is its kind, its length and its
+//! content.
 
 use std::collections::BTreeMap;
 
 /// First and last bytes of a file; the sixth is the version.
 pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
-/// Kind and length in front of every record.
+/// Kind and length of every record.
 pub(super) const HEAD: usize = 1 + 8;
-/// A footer and the magic after it: what a file ends with.
+/// The end of a file: a footer and the magic bytes.
 pub(super) const END: usize = HEAD + 8 + 8 + 4 + MAGIC.len();
 /// The record that ends the data.
 pub(super) const DATA_END: usize = HEAD + 4;
 
-/// Kinds of records.
 pub(super) mod kind {
     pub(in crate::session) const HEADER: u8 = 0x01;
     pub(in crate::session) const FOOTER: u8 = 0x02;
@@ -28,16 +28,15 @@ pub(super) mod kind {
     pub(in crate::session) const METADATA_INDEX: u8 = 0x0D;
     pub(in crate::session) const SUMMARY_OFFSET: u8 = 0x0E;
     pub(in crate::session) const DATA_END: u8 = 0x0F;
-    /// Free room. Kinds from 0x80 are private, and every reader skips those that it does not know.
+    /// Free space. Kinds from 0x80 are private, and every reader skips unknown kinds.
     pub(in crate::session) const ROOM: u8 = 0x80;
 }
 
-/// Appends the parts of a record.
 pub(super) trait Put {
     fn u16(&mut self, value: u16);
     fn u32(&mut self, value: u32);
     fn u64(&mut self, value: u64);
-    /// With its length in front, 32 bit.
+    /// Appends bytes after their length, 32 bit.
     fn bytes(&mut self, bytes: &[u8]);
     fn text(&mut self, text: &str);
     fn texts(&mut self, entries: &BTreeMap<String, String>);
@@ -75,7 +74,7 @@ impl Put for Vec<u8> {
     }
 }
 
-/// Appends a record whose content `fill` appends.
+/// Appends a record whose content is appended by `fill`.
 pub(super) fn record(out: &mut Vec<u8>, kind: u8, fill: impl FnOnce(&mut Vec<u8>)) {
     out.extend_from_slice(&head(kind, 0));
     let begin = out.len();
@@ -84,7 +83,6 @@ pub(super) fn record(out: &mut Vec<u8>, kind: u8, fill: impl FnOnce(&mut Vec<u8>
     out[begin - 8..begin].copy_from_slice(&length.to_le_bytes());
 }
 
-/// Kind and length of a record.
 pub(super) fn head(kind: u8, length: u64) -> [u8; HEAD] {
     let mut head = [kind; HEAD];
     head[1..].copy_from_slice(&length.to_le_bytes());
@@ -98,7 +96,7 @@ pub(super) fn header(out: &mut Vec<u8>, profile: &str, library: &str) {
     });
 }
 
-/// Footer and magic. A checksum of 0 means: none.
+/// Appends the footer and the magic bytes. A checksum of 0 means none.
 pub(super) fn end(out: &mut Vec<u8>, summary_start: u64, offsets_start: u64, crc: u32) {
     record(out, kind::FOOTER, |out| {
         out.u64(summary_start);
@@ -127,7 +125,7 @@ pub(super) fn channel(out: &mut Vec<u8>, id: u16, schema: u16, topic: &str, enco
     });
 }
 
-/// `time_ns` is that of the sample, and counts as that of publishing too.
+/// `time_ns` is the time of the sample, and is also stored as the time of publishing.
 pub(super) fn message(out: &mut Vec<u8>, channel: u16, sequence: u32, time_ns: u64, data: &[u8]) {
     out.extend_from_slice(&head(kind::MESSAGE, (2 + 4 + 8 + 8 + data.len()) as u64));
     out.u16(channel);
@@ -158,22 +156,18 @@ pub(super) fn metadata(out: &mut Vec<u8>, name: &str, entries: &BTreeMap<String,
     });
 }
 
-/// What a file holds.
+/// Contents of a file in numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Messages.
     pub messages: u64,
     /// Kinds of messages.
     pub schemas: u16,
-    /// Channels, which are topics.
+    /// A channel is a topic.
     pub channels: u32,
-    /// Attachments.
     pub attachments: u32,
-    /// Records of metadata.
     pub metadata: u32,
-    /// Chunks.
     pub chunks: u32,
-    /// Time of the first and the last message, ns; zero without messages.
+    /// Times of the first and the last message, ns; zero without messages.
     pub times_ns: (u64, u64),
     /// Messages of each channel, by its number.
     pub by_channel: BTreeMap<u16, u64>,

@@ -1,19 +1,21 @@
-//! A file that is valid at every moment, also when the process is killed in the middle of a write.
+//! A file that is valid at every moment, even if the process is killed in the middle of a write.
 //!
-//! A write is no atom: a killed process leaves any number of its pages behind (measured: 39 of 60 writes of 800 kB were torn).
-//! What lies within one page arrives whole or not at all, and so does the size of the file that it sets. Hence:
+//! Writes are not atomic: of the pages of a write, a killed process leaves any number behind (measured: 39 of 60 writes
+//! of 800 kB were torn). Bytes within one page arrive whole or not at all, and so does the file size that they set.
+//! Hence:
 //!
 //! ```text
 //! data | free room | end of data, summary | free room | footer, magic
 //!      p                                  q                         end of the file
 //! ```
 //!
-//! Free room is a record of a private kind, which readers skip. New bytes are written inside of it, where nobody looks, with the
-//! head of the rest of the room behind them; then the nine bytes of the room's head are exchanged for the head of the first new
-//! record, within one page. That is how chunks come to the data (`p`) and chunk indexes to the summary (`q`, together with the
-//! statistics). A summary that changes otherwise is written anew into the free room; then the footer points to it, then the
-//! room's head at `p` leads to it. The file grows by the same step: a new footer far behind the end, whose summary stands
-//! already in the free room. What lies between is a hole, which takes no disk.
+//! Free space is a record of a private kind, which readers skip. New bytes are written inside it, where readers do not
+//! look, followed by the head of the remaining free space. Then the nine bytes of the old head are replaced by the head
+//! of the first new record, within one page. This is how chunks are added to the data (`p`) and chunk indexes to the
+//! summary (`q`, together with the statistics). A summary that changes in any other way is rewritten into the free
+//! space; then the footer is pointed at it, and then the head of the free space at `p`. The file grows by the same
+//! step: a new footer far behind the end, whose summary is in the free space already. The gap between them is a hole,
+//! which uses no disk space.
 
 use std::{
     fs::File,
@@ -27,47 +29,47 @@ use super::{
     summary::Summary,
 };
 
-/// Of memory, on every machine that this runs on, or a part of one.
+/// The size of a memory page, or a fraction of it, on every machine that this runs on.
 const PAGE: u64 = 4096;
-/// Free room is kept for a summary and so much more.
+/// Free space is kept for a summary and for this many bytes more.
 const SPARE: u64 = 64 << 10;
-/// The file grows by so much at least; a hole takes no disk.
+/// The file grows by at least this much; the hole uses no disk space.
 pub(super) const GROWTH: u64 = 16 << 20;
-/// And by so many summaries, as each growth writes two.
+/// And by at least this many summaries, because each growth writes two.
 const GROWTH_IN_SUMMARIES: u64 = 32;
 
 pub(super) struct Layout {
     file: File,
     growth: u64,
-    /// Where the data ends and the free room begins.
+    /// End of the data and begin of the free space.
     data_end: u64,
-    /// Where the free room ends: the record that ends the data.
+    /// End of the free space: the record that ends the data.
     room_end: u64,
     tail: Tail,
-    /// Where the footer stands; the file ends behind it.
+    /// Position of the footer, which ends the file.
     footer_at: u64,
-    /// Everything written so far.
+    /// Bytes written so far.
     written: u64,
-    /// The file could not be led to what was written: what stands where is not known any more.
+    /// The last switch failed, so it is unknown which version of the file readers see.
     failed: bool,
     #[cfg(test)]
     pub(super) log: Vec<(u64, Vec<u8>)>,
 }
 
-/// Where parts of a summary stand.
+/// Positions of the parts of a summary.
 #[derive(Clone, Copy, Default)]
 struct Tail {
-    /// The indexes of chunks, with free room between some of them. They are kept nowhere else.
+    /// The indexes of chunks, with free space between some of them. They are stored only here.
     indexes_at: u64,
-    /// Behind them the statistics, the last record.
+    /// The statistics follow the indexes; they are the last record.
     statistics_at: u64,
 }
 
-/// So many bytes of the indexes are copied at once.
+/// Number of index bytes copied at a time.
 const COPIED: usize = 64 << 10;
 
 impl Layout {
-    /// Lays out a new, empty file that nobody else sees yet.
+    /// Lays out a new, empty file that other processes cannot see yet.
     pub(super) fn new(file: File, library: &str, growth: u64, summary: &Summary) -> io::Result<Self> {
         let mut begin = format::MAGIC.to_vec();
         format::header(&mut begin, "", library);
@@ -101,14 +103,14 @@ impl Layout {
         &self.file
     }
 
-    /// Bytes written so far, and bytes of data that stand in the file.
+    /// Returns the bytes written so far, and the bytes of data in the file.
     pub(super) fn written(&self) -> (u64, u64) {
         (self.written, self.data_end)
     }
 
-    /// Makes room for so many bytes of data and of summary, and tells where the data will stand.
+    /// Makes room for this many bytes of data and of summary; returns the position of the data.
     pub(super) fn reserve(&mut self, data: u64, in_summary: u64, summary: &mut Summary) -> io::Result<u64> {
-        // Twice the summary: one that is written anew needs room while it leaves as much for the next.
+        // Twice the summary: when it is rewritten, room must remain for the next rewrite.
         let needed = data + 4 * HEAD as u64 + 2 * (summary.room() + in_summary) + SPARE;
         if self.failed {
             return Err(io::Error::other("an earlier write failed"));
@@ -119,7 +121,7 @@ impl Layout {
         Ok(self.data_end)
     }
 
-    /// Appends records to the data, where [`Layout::reserve`] said.
+    /// Appends records to the data, at the position from [`Layout::reserve`].
     pub(super) fn append(&mut self, records: &[u8]) -> io::Result<()> {
         let end = self.data_end + records.len() as u64;
         let mut behind = Vec::new();
@@ -132,13 +134,13 @@ impl Layout {
         Ok(())
     }
 
-    /// Appends the new chunk indexes, with the statistics behind them.
+    /// Appends the new chunk indexes, followed by the statistics.
     pub(super) fn append_indexes(&mut self, summary: &mut Summary) -> io::Result<()> {
         let begin = self.tail.statistics_at;
         let mut bytes = summary.new_indexes().to_vec();
         let statistics = summary.statistics_record();
         let fits = |at: u64| at % PAGE + (bytes.len() + statistics.len() + 3 * HEAD) as u64 <= PAGE;
-        // Where it does not fit into this page, it is written into the next one before this one leads there.
+        // If the head does not fit into this page, write into the next page before this page leads there.
         let at = if fits(begin) { begin } else { pages(begin + HEAD as u64) };
         let statistics_at = keep_whole(&mut bytes, at);
         bytes.extend_from_slice(&statistics);
@@ -158,7 +160,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Writes a summary that has changed otherwise; there is room for it (see [`Layout::reserve`]).
+    /// Writes a summary that has changed in another way; [`Layout::reserve`] has made room for it.
     pub(super) fn renew(&mut self, summary: &mut Summary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
         let at = self.before_room_end(summary.room())?;
@@ -166,7 +168,7 @@ impl Layout {
         self.lead_to(at, tail, summary)
     }
 
-    /// Appends the end of a finished file, with the places of all groups and a checksum, and cuts the rest off.
+    /// Appends the end of a finished file, with the positions of all groups and a checksum, and cuts off the rest.
     pub(super) fn finish(mut self, summary: &mut Summary) -> io::Result<()> {
         self.reserve(0, 0, summary)?;
         let begin = self.data_end + DATA_END as u64;
@@ -211,7 +213,7 @@ impl Layout {
         let room = summary.room();
         let more = (needed + 2 * room + 2 * SPARE).max(self.growth).max(GROWTH_IN_SUMMARIES * room);
         let footer_at = pages(self.footer_at + more) - END as u64;
-        // The same summary in the room that is left, with room behind it up to the new footer.
+        // The same summary in the remaining free space, with free space after it up to the new footer.
         let at = self.before_room_end(room)?;
         let tail = self.write_tail(summary, at, footer_at)?;
         let mut end = Vec::new();
@@ -219,19 +221,19 @@ impl Layout {
         self.write(&end, footer_at)?;
         self.footer_at = footer_at;
         self.leave_room_up_to(at, tail, summary)?;
-        // Now there is room before the footer: there it belongs.
+        // There is room before the footer now, so move the summary there.
         let at = footer_at - SPARE - room - room / 2;
         let tail = self.write_tail(summary, at, footer_at)?;
         self.lead_to(at, tail, summary)
     }
 
-    /// Where something of this length stands at the end of the free room.
+    /// Returns the position of a record of this length at the end of the free space.
     fn before_room_end(&self, length: u64) -> io::Result<u64> {
         let at = self.room_end.checked_sub(length).filter(|&at| at >= self.data_end + HEAD as u64);
         at.ok_or_else(|| io::Error::other("there is no room for the summary"))
     }
 
-    /// Footer and free room lead to another summary.
+    /// Points the footer and the free space at another summary.
     fn lead_to(&mut self, at: u64, tail: Tail, summary: &mut Summary) -> io::Result<()> {
         let start = (at + DATA_END as u64).to_le_bytes();
         self.switch(&start, self.footer_at + HEAD as u64)?;
@@ -246,7 +248,7 @@ impl Layout {
         Ok(())
     }
 
-    /// The end of the data, the summary and the head of the free room up to the footer, in free room.
+    /// Writes the end of the data, the summary and the head of the free space before the footer into free space.
     fn write_tail(&mut self, summary: &Summary, at: u64, footer_at: u64) -> io::Result<Tail> {
         let mut bytes = Vec::new();
         record(&mut bytes, kind::DATA_END, |out| out.u32(0));
@@ -264,8 +266,8 @@ impl Layout {
         Ok(Tail { indexes_at, statistics_at })
     }
 
-    /// The indexes of chunks once more: those in the summary of the file without the room between them, and the new ones. Gives the
-    /// place behind them.
+    /// Writes the indexes of chunks again: those of the file's summary without the gaps between them, and the new ones.
+    /// Returns the position after them.
     fn write_indexes(&mut self, summary: &Summary, at: u64, mut copied: impl FnMut(&[u8])) -> io::Result<u64> {
         let Tail { indexes_at, statistics_at } = self.tail;
         let source = Source::File(self.file.try_clone()?, statistics_at);
@@ -292,7 +294,7 @@ impl Layout {
         if at == end { Ok(at) } else { Err(io::Error::other("another program has changed the end of the file")) }
     }
 
-    /// Within one page: what readers see changes here, at once.
+    /// Writes within one page: this is where the change becomes visible to readers, at once.
     fn switch(&mut self, bytes: &[u8], at: u64) -> io::Result<()> {
         debug_assert_eq!(at / PAGE, (at + bytes.len() as u64 - 1) / PAGE, "across pages");
         self.write(bytes, at).inspect_err(|_| self.failed = true)
@@ -307,8 +309,8 @@ impl Layout {
     }
 }
 
-/// The head of the record that follows `bytes`, which stand at `at`, must lie within one page: fills up where it would not. Gives
-/// its place.
+/// Pads `bytes`, which start at `at`, so that the head of the record that follows them lies within one page. Returns
+/// the position of that record.
 fn keep_whole(bytes: &mut Vec<u8>, at: u64) -> u64 {
     if (at + bytes.len() as u64) % PAGE + HEAD as u64 > PAGE {
         bytes.extend_from_slice(&head(kind::ROOM, 0));
@@ -316,7 +318,7 @@ fn keep_whole(bytes: &mut Vec<u8>, at: u64) -> u64 {
     at + bytes.len() as u64
 }
 
-/// Up to the next whole page.
+/// Rounds up to whole pages.
 fn pages(bytes: u64) -> u64 {
     bytes.next_multiple_of(PAGE)
 }

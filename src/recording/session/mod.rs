@@ -1,7 +1,7 @@
 //! The file of a recorded session: MCAP (<https://mcap.dev/spec>) that is valid at every moment.
 //!
 //! [`Writer`] makes it, [`Reader`] reads it and those of others. Not with the crate `mcap`: its writer makes a file valid at its end
-//! only, and compresses through C libraries; our tests read with it. docs/sessions.md compares the two and has the figures.
+//! only, and compresses through C libraries; our tests read with it. docs/decisions/own-mcap-writer.md compares the two.
 
 mod at;
 mod chunk;

@@ -1,5 +1,5 @@
-//! The summary at the end of a session: what a reader needs to know before it reads a chunk. Kept as encoded records, one buffer for each kind;
-//! the indexes of chunks, which are as many as the session is long, stay in the file.
+//! The summary at the end of a session, which a reader needs before it reads a chunk. Kept as encoded records, one
+//! buffer for each kind. The indexes of chunks stay in the file, because their number grows with the session.
 
 use super::format::{self, Statistics, kind};
 
@@ -9,15 +9,15 @@ pub(super) struct Summary {
     pub(super) channels: Vec<u8>,
     pub(super) attachments: Vec<u8>,
     pub(super) metadata: Vec<u8>,
-    /// Indexes of chunks that are not in the summary of the file yet.
+    /// Indexes of chunks that are not in the file's summary yet.
     new_indexes: Vec<u8>,
-    /// Bytes of those that are.
+    /// Bytes of the indexes that are.
     indexed: u64,
     pub(super) statistics: Statistics,
 }
 
 impl Summary {
-    /// The kinds that are kept here, in their order in the file; the indexes of chunks come behind them.
+    /// The kinds kept here, in their order in the file; the indexes of chunks follow them.
     pub(super) fn groups(&self) -> [(u8, &[u8]); 4] {
         [
             (kind::SCHEMA, &self.schemas),
@@ -27,7 +27,7 @@ impl Summary {
         ]
     }
 
-    /// Takes the index of a chunk.
+    /// Adds the index of a chunk.
     pub(super) fn index(&mut self, record: &[u8]) {
         self.new_indexes.extend_from_slice(record);
     }
@@ -36,12 +36,11 @@ impl Summary {
         &self.new_indexes
     }
 
-    /// Bytes of all indexes of chunks.
     pub(super) fn indexes(&self) -> u64 {
         self.indexed + self.new_indexes.len() as u64
     }
 
-    /// The file has them now.
+    /// Marks the new indexes as written to the file.
     pub(super) fn is_in_file(&mut self) {
         self.indexed += self.new_indexes.len() as u64;
         self.new_indexes.clear();
@@ -53,7 +52,7 @@ impl Summary {
         record
     }
 
-    /// Most bytes of everything, the record before it and what fills gaps included.
+    /// Upper limit of the bytes of everything, including the record before it and padding.
     pub(super) fn room(&self) -> u64 {
         let groups: usize = self.groups().iter().map(|(_, group)| group.len()).sum();
         (groups + self.statistics_record().len() + 64) as u64 + self.indexes()

@@ -16,41 +16,41 @@ use super::{
     summary::Summary,
 };
 
-/// A chunk is closed before it spans so much time, ns: so much is lost at most when the process is killed.
+/// A chunk is closed before it spans more than this, ns; a killed process loses at most this much.
 pub const CHUNK_NS: u64 = 500_000_000;
-/// And when its records take so many bytes before compression.
+/// A chunk is also closed when its records have this many bytes before compression.
 pub const CHUNK_BYTES: usize = 8 << 20;
-/// Kinds of messages that stand in chunks of their own, without compression: they are compressed already, and who reads numbers need not read past
-/// them.
+/// Kinds of messages that have their own, uncompressed chunks: they are compressed already, and a reader of numbers can
+/// skip them.
 const PICTURES: [&str; 2] = ["foxglove.CompressedImage", "foxglove.CompressedVideo"];
-/// Most bytes of a message, an attachment or the records of a kind of metadata: lengths have 32 bit.
+/// Maximum bytes of a message, an attachment or the records of a kind of metadata: lengths have 32 bit.
 const RECORD_MAX: u64 = 1 << 31;
 
-/// A channel of one file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ChannelId(pub(super) u16);
 
-/// How the messages of a channel are to be understood; see [`crate::messages`].
+/// Encoding of a channel's messages; see [`crate::messages`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Encoding {
-    /// Name of the kind of message, such as `sensor_msgs/msg/JointState`; empty with the next two for none.
+    /// Name of the message type, such as `sensor_msgs/msg/JointState`; empty, with the next two fields, for none.
     pub schema: String,
-    /// How the kind is described, such as `ros2msg`.
+    /// Language of the description, such as `ros2msg`.
     pub schema_encoding: String,
-    /// The description.
+    /// The description of the message type.
     pub schema_data: Vec<u8>,
-    /// How a message is encoded, such as `cdr`.
+    /// Encoding of a message, such as `cdr`.
     pub message_encoding: String,
 }
 
-/// Writes a session file (MCAP, chunks compressed with LZ4; pictures in chunks of their own, as they came). Owned by one thread, which waits for the
-/// disk.
+/// Writes a session file (MCAP, chunks compressed with LZ4; images unchanged in their own chunks). Owned by one thread,
+/// which waits for the disk.
 ///
-/// The file is valid at every moment: whatever stops the process, `kill -9` or a full disk, every reader of MCAP opens it
-/// unrepaired. Missing is at most what was not in a closed chunk yet, so a thread that hears nothing for a while calls
-/// [`Writer::flush`]. Against the loss of power somebody calls `fdatasync` now and then ([`Writer::sync_handle`]).
+/// The file is valid at every moment: whatever stops the process, `kill -9` or a full disk, every MCAP reader opens the
+/// file without repair. At most the data that were not in a closed chunk are missing, so a thread that receives nothing
+/// for a while should call [`Writer::flush`]. To survive a loss of power, call `fdatasync` regularly
+/// ([`Writer::sync_handle`]).
 ///
-/// A message whose writing gave an error is not in the file, and the next call tries again.
+/// If writing a message fails, the message is not in the file, and the next call tries again.
 ///
 /// ```
 /// use nima_recording::session::{Encoding, Writer};
@@ -73,10 +73,10 @@ pub struct Encoding {
 pub struct Writer {
     path: PathBuf,
     layout: Layout,
-    /// Kept for as long as it is written; see [`at::guard`].
+    /// Kept while the file is written; see [`at::guard`].
     _guard: Option<File>,
     summary: Summary,
-    /// The summary in the file lacks more than can be appended.
+    /// The file's summary lacks more than can be appended.
     summary_changed: bool,
     numbers: Lane,
     pictures: Lane,
@@ -91,7 +91,6 @@ struct OfChannel {
     sequence: u32,
 }
 
-/// Chunks of one kind.
 struct Lane {
     chunk: Chunk,
     /// A closed chunk that could not be written yet.
@@ -103,7 +102,7 @@ impl Lane {
         Self { chunk, waiting: None }
     }
 
-    /// Whether it must be written before it takes a message of this length and time.
+    /// Whether the chunk must be written before it accepts a message of this length and time.
     fn is_due(&self, length: usize, time_ns: u64) -> bool {
         let full = self.chunk.len() + length > CHUNK_BYTES && self.chunk.len() > 0;
         self.waiting.is_some() || full || self.chunk.span_ns(time_ns) >= CHUNK_NS
@@ -118,10 +117,10 @@ impl Lane {
 }
 
 impl Writer {
-    /// Begins a new file; `library` names the program and its version.
+    /// Creates a file; `library` names the program and its version.
     ///
     /// # Errors
-    /// A file of this name, no such folder, no right to write, no space.
+    /// The file exists, its folder does not, or the system reports no permission or no space.
     pub fn create(path: &Path, library: &str) -> Result<Self, WriteError> {
         Self::create_growing_by(path, library, GROWTH)
     }
@@ -142,10 +141,10 @@ impl Writer {
         })
     }
 
-    /// A new channel, or the one that has this topic and encoding already.
+    /// Returns a new channel, or the existing one with this topic and encoding.
     ///
     /// # Errors
-    /// More than 65 535 channels; what the system says while the file grows.
+    /// More than 65 535 channels, or an I/O error while the file grows.
     pub fn channel(&mut self, topic: &str, encoding: Encoding) -> Result<ChannelId, WriteError> {
         if let Some(id) = self.channels.iter().position(|one| one.topic == topic && one.encoding == encoding) {
             return Ok(ChannelId(id as u16));
@@ -171,7 +170,7 @@ impl Writer {
             self.schemas.push(encoding.clone());
             self.summary.statistics.schemas += 1;
         }
-        // In the chunk too, for who reads from the beginning.
+        // Also stored in the chunk, for readers that start at the beginning.
         let lane = if is_picture(&encoding) { &mut self.pictures } else { &mut self.numbers };
         for (record, in_summary) in [(schema, &mut self.summary.schemas), (channel, &mut self.summary.channels)] {
             lane.chunk.put_record(&record);
@@ -183,11 +182,11 @@ impl Writer {
         Ok(ChannelId(id))
     }
 
-    /// Takes a message; `log_time_ns` is the time of its sample. Times should rise, and a chunk is closed before it spans more
-    /// than [`CHUNK_NS`].
+    /// Adds a message; `log_time_ns` is the time of its sample. Times should rise, and a chunk is closed before it
+    /// spans more than [`CHUNK_NS`].
     ///
     /// # Errors
-    /// What the system says while a chunk is written; a channel of another file. The message is not taken then.
+    /// A channel of another file, or an I/O error while a chunk is written. The message is then not added.
     pub fn message(&mut self, channel: ChannelId, log_time_ns: u64, data: &[u8]) -> Result<(), WriteError> {
         self.check("a larger message", data.len() as u64, RECORD_MAX)?;
         if usize::from(channel.0) >= self.channels.len() {
@@ -195,7 +194,7 @@ impl Writer {
         }
         let picture = is_picture(&self.channels[usize::from(channel.0)].encoding);
         let lane = if picture { &self.pictures } else { &self.numbers };
-        // Both, so that what is lost at most when the process is killed is that of the same time.
+        // Write both, so that a killed process loses the same period of both.
         if lane.is_due(data.len(), log_time_ns) {
             self.flush()?;
         }
@@ -206,10 +205,10 @@ impl Writer {
         Ok(())
     }
 
-    /// Writes a whole file into this one, beside the messages.
+    /// Writes a whole file into the session.
     ///
     /// # Errors
-    /// More than 2 GiB; what the system says while it is written.
+    /// More than 2 GiB, or an I/O error.
     pub fn attachment(
         &mut self,
         name: &str,
@@ -237,10 +236,8 @@ impl Writer {
         self.renew_summary()
     }
 
-    /// Writes named values.
-    ///
     /// # Errors
-    /// What the system says while they are written.
+    /// I/O errors.
     pub fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) -> Result<(), WriteError> {
         let size: usize = entries.iter().map(|(key, value)| 8 + key.len() + value.len()).sum();
         self.check("larger metadata", size as u64, RECORD_MAX)?;
@@ -261,7 +258,7 @@ impl Writer {
     /// Closes the chunks now and writes them.
     ///
     /// # Errors
-    /// What the system says; the chunks are kept, and written by the next call that succeeds.
+    /// I/O errors. The chunks are kept, and are written by the next call that succeeds.
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.write_chunk(|writer| &mut writer.numbers)?;
         self.write_chunk(|writer| &mut writer.pictures)?;
@@ -283,30 +280,31 @@ impl Writer {
         if self.summary_changed {
             return self.renew_summary();
         }
-        // Until it is in the file.
+        // Set until the summary is in the file.
         self.summary_changed = true;
         self.layout.append_indexes(&mut self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
         self.summary_changed = false;
         Ok(())
     }
 
-    /// The same file, for a thread that calls `sync_data` each second.
+    /// Returns the same file for a thread that calls `sync_data` every second.
     ///
     /// # Errors
-    /// What the system says.
+    /// I/O errors.
     pub fn sync_handle(&self) -> io::Result<File> {
         self.layout.file().try_clone()
     }
 
-    /// Bytes handed to the system so far, and bytes of data that stand in the file; the rest is what keeps it valid.
+    /// Returns the bytes passed to the system so far, and the bytes of data in the file; the difference is what keeps
+    /// the file valid.
     pub fn bytes(&self) -> (u64, u64) {
         self.layout.written()
     }
 
-    /// Closes the chunks, writes the last summary with its checksum, cuts off the free room and waits for the disk.
+    /// Closes the chunks, writes the last summary with its checksum, cuts off the free space and waits for the disk.
     ///
     /// # Errors
-    /// What the system says; the file is as readable as before.
+    /// I/O errors. The file is as readable as before.
     pub fn finish(mut self) -> Result<Statistics, WriteError> {
         self.flush()?;
         self.layout.finish(&mut self.summary).map_err(|error| WriteError::write(&self.path, &error))?;
@@ -324,7 +322,6 @@ impl Writer {
         self.summary.new_indexes().len()
     }
 
-    /// Writes the chunk into the data.
     fn place(&mut self, chunk: &Closed) -> Result<u64, WriteError> {
         let of_index = 128 + 10 * chunk.indexes.len();
         let at = self.reserve(chunk.bytes.len() as u64, of_index as u64)?;
@@ -365,11 +362,11 @@ impl Writer {
     }
 }
 
-/// Whether a process is writing this session now: it holds a lock on the file (on Windows, keeps others from deleting it), which the system takes
-/// from it however it ends.
+/// Whether a process is writing this session now. The writer holds a lock on the file (on Windows it prevents the
+/// file's deletion), which the system releases however the process ends.
 ///
 /// # Errors
-/// I/O errors of the file.
+/// I/O errors.
 pub fn is_being_written(path: &Path) -> io::Result<bool> {
     at::is_locked(path)
 }
@@ -382,10 +379,10 @@ fn same_schema(one: &Encoding, other: &Encoding) -> bool {
     one.schema == other.schema && one.schema_encoding == other.schema_encoding && one.schema_data == other.schema_data
 }
 
-/// The empty file is laid out under another name, and appears whole.
+/// Lays out the empty file under another name, so that it appears complete.
 fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Result<Layout> {
     if path.symlink_metadata().is_ok() {
-        return Err(io::Error::new(ErrorKind::AlreadyExists, "something of this name is there"));
+        return Err(io::Error::new(ErrorKind::AlreadyExists, "the file exists already"));
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     #[cfg_attr(not(unix), expect(unused_mut, reason = "rights are set where there are any"))]
@@ -396,13 +393,13 @@ fn create(path: &Path, library: &str, growth: u64, summary: &Summary) -> io::Res
     let layout = Layout::new(new.as_file().try_clone()?, library, growth, summary)?;
     at::lock(layout.file());
     new.persist_noclobber(path).map_err(|error| error.error)?;
-    // Its name too outlasts a loss of power, where the system can do that.
+    // Makes the name survive a loss of power as well, where the system can do that.
     #[cfg(unix)]
     File::open(folder).and_then(|folder| folder.sync_all()).ok();
     Ok(layout)
 }
 
-/// Without the name of a file that nobody asked for.
+/// Removes the name of the temporary file, which the user never named.
 fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" at path ").next().unwrap_or_default().to_owned()

@@ -2,7 +2,7 @@
 
 use jiff::Timestamp;
 
-/// Formats seconds since 1970 as ISO 8601, UTC; the last second of 9999 for later ones.
+/// Formats seconds since 1970 as ISO 8601, UTC; later times than the year 9999 become its last second.
 pub(super) fn format(seconds: u64) -> String {
     let time = i64::try_from(seconds).ok().and_then(|seconds| Timestamp::from_second(seconds).ok());
     time.unwrap_or(Timestamp::MAX).to_string()

@@ -1,4 +1,4 @@
-//! Records of ready checks: TOML, one file per check, in the folder `checks` beside the calibrations. All are kept.
+//! Records of ready checks: TOML, one file per check, in the folder `checks` next to the calibrations. All are kept.
 
 use std::{
     fs, io,
@@ -11,99 +11,90 @@ use serde::{Deserialize, Serialize};
 
 use super::{Store, StoreError, date, seconds};
 
-/// A check counts for the engagements of the next twelve hours: a working day, whatever the time zone.
+/// A check is valid for the engagements of the next twelve hours: a working day, whatever the time zone.
 pub const VALID_S: u64 = 12 * 3600;
 
-/// A device as it was checked.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckedDevice {
-    /// Its name in the rig: `right sensor`.
+    /// Its name in the rig, such as `right sensor`.
     pub name: String,
     pub driver: String,
-    /// Empty if it tells none.
+    /// Empty if the device does not report one.
     pub serial: String,
 }
 
-/// How a point of the list ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// In order.
     Passed,
-    /// Not in order.
     Failed,
     /// The rig has no such part.
     LeftOut,
-    /// The check was ended before it.
+    /// The check was ended before this item.
     NotReached,
 }
 
-/// A point of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckedItem {
-    /// What was checked.
+    /// Name of the check.
     pub check: String,
-    /// How it ended.
     pub outcome: Outcome,
-    /// What was measured, its limit and their unit.
+    /// Measured value; its limit and unit follow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// See `value`.
+    /// In `unit`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// See `value`.
+    /// Unit of `value` and `limit`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// Why it failed, or what the rig lacks.
+    /// Why it failed, or which part the rig lacks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<String>,
-    /// What was to be done.
+    /// Remedy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cure: Option<String>,
 }
 
-/// A ready check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReadyRecord {
     /// Always [`KIND`].
     pub kind: String,
-    /// Its end, UTC, ISO 8601.
+    /// End of the check, UTC, ISO 8601.
     pub date: String,
     /// Version of the program.
     pub software: String,
-    /// Name of the rig.
     pub rig: String,
     /// Built-in name or path of its file.
     pub rig_file: String,
-    /// Who did what was asked for.
+    /// Person who carried out the requested actions.
     pub by: String,
-    /// No point failed, and each was reached.
+    /// No item failed, and every item was reached.
     pub passed: bool,
     /// Duration, s.
     pub took_s: f64,
     /// The devices, in the order of the rig's roster.
     #[serde(default)]
     pub devices: Vec<CheckedDevice>,
-    /// The list.
     #[serde(default)]
     pub items: Vec<CheckedItem>,
 }
 
-/// First word of the files' names.
+/// Prefix of the file names.
 pub const KIND: &str = "ready_check";
 
 impl ReadyRecord {
-    /// Age at `now`, s; `None` if its date is none, or later than `now` by more than a minute.
+    /// Returns the age at `now`, s; `None` if the date is invalid or more than a minute after `now`.
     pub fn age_s(&self, now: SystemTime) -> Option<u64> {
         let made_s = date::parse(&self.date)?;
         let now_s = seconds(now);
         (made_s <= now_s + 60).then(|| now_s.saturating_sub(made_s))
     }
 
-    /// Whether it passed, is of today, and was made with these devices.
+    /// Whether it passed, is recent enough, and was made with these devices.
     pub fn is_valid(&self, devices: &[CheckedDevice], now: SystemTime) -> bool {
         self.passed && self.devices == devices && self.age_s(now).is_some_and(|age_s| age_s <= VALID_S)
     }
@@ -126,7 +117,7 @@ impl Store {
         let stem = format!("{}{}", prefix(&record.rig), record.date.replace(':', ""));
         let failed = |path: &Path, source| StoreError::Write { path: path.to_owned(), source };
         fs::create_dir_all(&folder).map_err(|source| failed(&folder, source))?;
-        // Two checks within a second are two files.
+        // Two checks within a second need two file names.
         let path = (0..100)
             .map(|again| folder.join(if again == 0 { format!("{stem}.toml") } else { format!("{stem}-{again}.toml") }))
             .find(|path| !path.exists())
@@ -135,12 +126,12 @@ impl Store {
         Ok(path)
     }
 
-    /// The last check of the rig of this name; files that cannot be read are passed over.
+    /// Returns the last check of the rig with this name; unreadable files are skipped.
     pub fn last_check(&self, rig: &str) -> Option<ReadyRecord> {
         self.last_check_that(rig, |_| true)
     }
 
-    /// The last one that passed, however old: it knows which device belongs to which part.
+    /// Returns the last check that passed, however old: it records which device belongs to which part.
     pub fn last_passed_check(&self, rig: &str) -> Option<ReadyRecord> {
         self.last_check_that(rig, |record| record.passed)
     }
@@ -152,7 +143,7 @@ impl Store {
         names.retain(|name| {
             name.starts_with(&prefix) && name.rsplit_once('.').is_some_and(|(_, ending)| ending == "toml")
         });
-        // The date is part of the name, with the longer name of the same second after the shorter one.
+        // The name contains the date; of two names of the same second, the longer is later.
         names.sort_by(|one, other| stem(one).cmp(stem(other)));
         names.iter().rev().find_map(|name| {
             let text = nima_files::read_text(&self.checks().join(name), nima_files::CONFIG_MAX).ok()?;
@@ -166,7 +157,7 @@ fn stem(name: &str) -> &str {
     name.strip_suffix(".toml").unwrap_or(name)
 }
 
-/// Begin of the names of a rig's checks: `ready_check-Emulated_rig-`.
+/// Prefix of the names of a rig's checks: `ready_check-Emulated_rig-`.
 fn prefix(rig: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
     format!("{KIND}-{}-", rig.chars().take(48).map(plain).collect::<String>())
@@ -219,7 +210,7 @@ mod tests {
         assert_eq!(store.last_passed_check("Emulated rig"), Some(record("Emulated rig", dates[2], true)));
         fs::remove_file(folder.path().join("checks/ready_check-Emulated_rig-2026-08-24T070000Z.toml")).unwrap();
         fs::write(folder.path().join("checks/ready_check-Emulated_rig-2027.toml"), "kind = 3").unwrap();
-        assert!(store.last_check("Emulated rig").is_some(), "a damaged file is passed over");
+        assert!(store.last_check("Emulated rig").is_some(), "a damaged file is skipped");
     }
 
     #[test]

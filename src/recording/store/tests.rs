@@ -47,7 +47,7 @@ fn what_is_saved_is_loaded_digit_by_digit() {
     assert_eq!((loaded.record, loaded.age, loaded.path), (saved, Age::Fresh, path));
 }
 
-/// A file in the format before records had a common head.
+/// A file in the format used before records had a common head.
 const BEFORE: &str = include_str!("gravity-before.toml");
 
 #[test]
@@ -128,7 +128,7 @@ fn a_refused_one_is_kept_only_under_a_name() {
     refused.judgement.override_reason = Some("bench test".into());
     let path = store.save(&refused).unwrap();
     assert_eq!(store.load::<CorrespondenceRecord>("A1", "grasper", now()).unwrap().unwrap().record, refused);
-    // Removing the name by hand must be noticed.
+    // Removing the name by hand must be detected.
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("override_by = \"A. Technician\""), "{text}");
     std::fs::write(&path, text.replace("override_by = \"A. Technician\"\n", "")).unwrap();
@@ -161,7 +161,7 @@ fn every_damage_names_the_file_and_the_place() {
     assert!(damaged(&of_the_date).contains("is not like 2026-08-21T10:20:30Z"));
 }
 
-/// Reads this text once with a key too many in each of its tables, and with each of its keys misspelled.
+/// Reads this text once with an additional key in each of its tables, and with each of its keys misspelled.
 fn no_key_passes_unknown<R: Record + std::fmt::Debug>(good: &str) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("edited.toml");

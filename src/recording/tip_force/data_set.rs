@@ -1,9 +1,9 @@
 //! Data sets for training and evaluation: CSV files with named columns.
 //!
-//! Inputs and outputs by name ([`DEFAULT_INPUTS`], [`DEFAULT_OUTPUTS`] or the caller's), and optionally `trajectory`
-//! (integer: consecutive rows with the same number belong together; without this column each file is one trajectory)
-//! and `contact` (0 or 1). A missing column or a field that is not a finite number is an error that states its
-//! position. An input can be computed from the history of others (see [`Derived`]).
+//! Contains inputs and outputs by name ([`DEFAULT_INPUTS`], [`DEFAULT_OUTPUTS`] or the caller's), and optionally
+//! `trajectory` (integer: consecutive rows with the same number belong together; without this column each file is one
+//! trajectory) and `contact` (0 or 1). A missing column or a field that is not a finite number is an error that states
+//! its position. An input can be computed from the history of others (see [`Derived`]).
 
 mod hashed;
 
@@ -23,51 +23,49 @@ use crate::tip_force::TipForceError;
 /// Which columns to use; `None` selects the default ones.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    /// Names of the inputs, columns or [`Derived`]; by default those of [`DEFAULT_INPUTS`] that the first file has.
+    /// Names of the inputs, columns or [`Derived`]; by default the [`DEFAULT_INPUTS`] that the first file has.
     pub inputs: Option<Vec<String>>,
-    /// Names of the outputs; by default [`DEFAULT_OUTPUTS`].
+    /// Default: [`DEFAULT_OUTPUTS`].
     pub outputs: Option<Vec<String>>,
 }
 
 impl Selection {
-    /// The columns that a data set must have for this model.
+    /// Selects the columns that a data set must have for this model.
     pub fn of(model: &Model) -> Self {
         Self { inputs: Some(model.inputs.clone()), outputs: Some(model.outputs.clone()) }
     }
 }
 
-/// Rows that belong together in time.
+/// Rows that are contiguous in time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trajectory {
     /// Index into [`DataSet::files`].
     pub file: usize,
-    /// Range of rows in the whole data set.
     pub rows: Range<usize>,
 }
 
 /// Rows of inputs and outputs, in the order of the files.
 #[derive(Clone, Debug)]
 pub struct DataSet {
-    /// Names of the inputs; the name of a derived one is complete (see [`Derived`]).
+    /// The name of a derived input is complete (see [`Derived`]).
     pub inputs: Vec<String>,
-    /// Names of the output columns.
     pub outputs: Vec<String>,
-    /// Input values, row by row.
+    /// Row by row.
     pub x: Vec<f32>,
-    /// Output values, row by row.
+    /// Row by row.
     pub y: Vec<f32>,
     /// Whether the tip was in contact in each row; `None` if a file has no such column.
     pub contact: Option<Vec<bool>>,
-    /// The files, in the given order.
+    /// In the given order.
     pub files: Vec<PathBuf>,
-    /// The trajectories, in order, covering all rows.
+    /// In order; they cover all rows.
     pub trajectories: Vec<Trajectory>,
     /// FNV-1a (64 bit) over the bytes of each file, as 16 hexadecimal digits.
     pub hashes: Vec<String>,
 }
 
 impl DataSet {
-    /// Reads these files, all with the same columns.
+    /// Reads these files, which must have the same columns.
     ///
     /// # Errors
     /// [`TipForceError`] for a file that cannot be read, a column that is missing or differs between the files, or a
@@ -80,7 +78,7 @@ impl DataSet {
         Self::of(paths.iter().map(open), selection)
     }
 
-    /// The same for texts with these file names.
+    /// Parses texts with these file names.
     ///
     /// # Errors
     /// As [`DataSet::read`].
@@ -88,7 +86,7 @@ impl DataSet {
         Self::of(texts.iter().map(|(path, bytes)| Ok((path.clone(), &bytes[..]))), selection)
     }
 
-    /// The same for any readers.
+    /// Parses the texts of any readers.
     fn of<R: io::Read>(
         sources: impl Iterator<Item = Result<(PathBuf, R), TipForceError>>,
         selection: &Selection,
@@ -123,17 +121,14 @@ impl DataSet {
         Ok(set)
     }
 
-    /// Number of rows.
     pub fn rows(&self) -> usize {
         self.y.len() / self.outputs.len().max(1)
     }
 
-    /// Inputs of a row.
     pub fn input(&self, row: usize) -> &[f32] {
         &self.x[row * self.inputs.len()..(row + 1) * self.inputs.len()]
     }
 
-    /// Outputs of a row.
     pub fn output(&self, row: usize) -> &[f32] {
         &self.y[row * self.outputs.len()..(row + 1) * self.outputs.len()]
     }
@@ -145,7 +140,7 @@ impl DataSet {
             selection.inputs.clone().unwrap_or_else(|| owned(DEFAULT_INPUTS.into_iter().filter(has).collect()));
         let outputs = selection.outputs.clone().unwrap_or_else(|| owned(DEFAULT_OUTPUTS.to_vec()));
         Self {
-            // If none is found, use the first default: the error then lists the columns that exist.
+            // If no input is found, use the first default: the error then lists the columns that exist.
             inputs: if inputs.is_empty() { owned(vec![DEFAULT_INPUTS[0]]) } else { inputs },
             outputs,
             x: Vec::new(),
@@ -216,7 +211,7 @@ impl DataSet {
     }
 
     /// Computes a derived input. If its swing is not given, the mean of all measured swings is used and added to its
-    /// name. For rows before the first measured swing, training uses the first one of the same trajectory.
+    /// name. For rows before the first measured swing, training uses the first swing of the same trajectory.
     fn fill(&mut self, history: History) -> Result<(), TipForceError> {
         let History { input, mut derived, rows, .. } = history;
         let open = derived.is_open();
@@ -249,7 +244,7 @@ impl DataSet {
 struct History {
     input: usize,
     derived: Derived,
-    /// Indices of the columns of position and load in the present file.
+    /// Indices of the columns of position and load in the current file.
     columns: [usize; 2],
     /// Position and load, row by row.
     rows: Vec<[f32; 2]>,
@@ -353,7 +348,7 @@ mod tests {
         let column = |k: usize| set.x[..half].iter().skip(k).step_by(3).copied().collect::<Vec<_>>();
         assert_eq!(column(1), [0.0, 1.0, 1.0, -1.0, -1.0]);
         assert_eq!(column(2), [1.0, 2.0, 2.0, 2.0, 2.0]);
-        // A model stores a name that does not depend on the file, even on one without a reversal.
+        // A model stores a name that does not depend on the file, not even on a file without a reversal.
         let other = read(&["x,f,y\n0,1,0\n1,1,0\n"], &set.inputs.join(","), "y").unwrap();
         assert_eq!(other.x[5].to_bits(), 2.0_f32.to_bits());
         let message = |inputs: &str| read(&["x,f,y\n0,1,0\n1,1,0\n"], inputs, "y").unwrap_err().to_string();

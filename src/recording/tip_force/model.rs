@@ -21,7 +21,6 @@ mod keeping;
 const FORMAT: &str = "nima tip force 2";
 const KEY: &str = "nima";
 
-/// The metadata.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Header {
@@ -45,10 +44,10 @@ pub fn save_model(model: &Model, path: &Path) -> Result<(), TipForceError> {
     write_atomically(path, |to| to.write_all(&file)).map_err(|error| wrong(error.to_string()))
 }
 
-/// The bytes of such a file.
+/// Returns the bytes of such a file.
 ///
 /// # Errors
-/// Why there are none, in words.
+/// A message with the reason.
 pub fn model_to_bytes(model: &Model) -> Result<Vec<u8>, String> {
     let tensors: Vec<(String, Vec<usize>, Vec<u8>)> =
         tensors_of(model).into_iter().map(|(name, shape, values)| (name, shape, bytes(&values))).collect();
@@ -115,10 +114,10 @@ pub fn load_model(path: &Path) -> Result<Model, TipForceError> {
     model_from_bytes(&file).map_err(unusable)
 }
 
-/// Reads and checks the bytes of such a file.
+/// Parses and checks the bytes of such a file.
 ///
 /// # Errors
-/// What is wrong with them, in words.
+/// A message with the fault.
 pub fn model_from_bytes(file: &[u8]) -> Result<Model, String> {
     let (_, metadata) = SafeTensors::read_metadata(file).map_err(|error| format!("no safetensors file ({error})"))?;
     let tensors = SafeTensors::deserialize(file).map_err(|error| format!("no safetensors file ({error})"))?;
@@ -152,7 +151,7 @@ fn member(tensors: &SafeTensors<'_>, m: usize, layers: usize) -> Result<Member, 
         let weights = values(tensors, &name)?;
         let shape = tensors.tensor(&name).map_err(|error| error.to_string())?.shape().to_vec();
         let bias = values(tensors, &format!("{m}.{k}.bias"))?;
-        let [inputs, outputs] = shape[..] else { return Err(format!("tensor {name} is no matrix")) };
+        let [inputs, outputs] = shape[..] else { return Err(format!("tensor {name} is not a matrix")) };
         Layer::new(inputs, outputs, &weights, &bias).ok_or_else(|| format!("tensor {name} does not fit its bias"))
     };
     let all = (0..layers).map(layer).collect::<Result<Vec<_>, _>>()?;

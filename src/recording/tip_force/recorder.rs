@@ -1,9 +1,9 @@
-//! Records a data set: a state machine that is given every sample, without a clock or a screen.
+//! Records a data set: a state machine that is fed every sample, without a clock or a screen.
 //!
 //! Takes the gravity-free wrench (N, Nm, `s1`), the [`WristSample`] with the sensor under the tissue, and the time (s).
-//! Stores a row for one in several samples: the network's inputs ([`DEFAULT_INPUTS`]) and the force at the tip from the
-//! sensor under the tissue, transformed with the calibrated correspondence to the frame of the inputs (`shaft`). Memory is bounded and
-//! allocated at the start.
+//! Stores one row for several samples: the network's inputs ([`DEFAULT_INPUTS`]) and the force at the tip from the
+//! sensor under the tissue, transformed with the calibrated correspondence to the frame of the inputs (`shaft`). Memory
+//! is bounded and allocated at the start.
 
 use std::{io, path::Path};
 
@@ -15,51 +15,47 @@ use nima_core::{
 };
 use nima_files::write_atomically;
 
-/// Most rows of a recording: four of the paper's data sets.
+/// Maximum number of rows: four of the paper's data sets.
 pub const MOST_ROWS: usize = 120_000;
 /// Interval between rows, s: the paper's 30000 rows take two and a half minutes.
 pub const ROW_EVERY_S: f64 = 0.005;
-/// Duration of a trajectory, s: the unit in which rows are held out when a network is judged.
+/// Duration of a trajectory, s: the unit in which rows are held out for judging a network.
 const TRAJECTORY_S: f64 = 5.0;
-/// Required rest of the sensor under the tissue at the start, s, and its largest standard deviation meanwhile, N.
+/// Required rest of the sensor under the tissue at the start, s, and its maximum standard deviation meanwhile, N.
 const REST_S: f64 = 0.5;
 const REST_SD_N: f64 = 0.15;
 /// Force above which the tip is in contact, N, and averaging time of that force, s.
 const CONTACT_N: f64 = 0.10;
 const CONTACT_S: f64 = 0.020;
 
-/// What is missing in a sample.
+/// The part that a sample lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// Gravity is not calibrated, or the wrist sensor is silent.
     WristForce,
     /// The sensor under the tissue is silent.
     TissueForce,
-    /// A rotation of the chain, from arm or tracker.
+    /// A rotation of the chain, from the arm or the tracker.
     Chain,
-    /// The depth through the trocar or the wrist's orientation; or a number is not finite.
+    /// The depth through the trocar or the wrist's orientation is missing, or a number is not finite.
     Pose,
 }
 
-/// State of the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RecorderPhase {
     /// A source is missing; no rows are recorded.
     Lacks(Lack),
-    /// The tip must be free and still: the sensor under the tissue is being zeroed.
+    /// The sensor under the tissue is being zeroed; the tip must be free and still.
     Resting {
-        /// Share of the required time, 0 to 1.
+        /// Fraction of the required time, 0 to 1.
         share: f64,
     },
     /// Waiting until the instrument has moved far enough for the direction of friction to be known.
     NotMoved,
-    /// Rows are being recorded.
     Recording,
-    /// The recording is full.
     Full,
 }
 
-/// A recording.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     correspondence: Correspondence,
@@ -95,7 +91,7 @@ struct Rest {
 }
 
 impl Recorder {
-    /// An empty recording; allocates its memory.
+    /// Makes an empty recording and allocates its memory.
     pub fn new(correspondence: Correspondence) -> Self {
         Self {
             correspondence,
@@ -113,7 +109,7 @@ impl Recorder {
         }
     }
 
-    /// Uses other feature settings than the live loop; for the study that chose them.
+    /// Uses other feature settings than the live loop; for the study that selected them.
     #[must_use]
     pub const fn with_features(mut self, settings: FeatureSettings) -> Self {
         self.features = Features::new(settings);
@@ -134,7 +130,8 @@ impl Recorder {
         self.phase
     }
 
-    /// Wrench at the wrist, and force on the tip from the sensor under the tissue, N (`s1`), not yet zeroed.
+    /// Returns the wrench at the wrist, and the force on the tip from the sensor under the tissue, N (`s1`), not yet
+    /// zeroed.
     fn tip_n(&self, gravity_free: Option<&Wrench>, sample: &WristSample) -> Result<(Wrench, Vector3<f64>), Lack> {
         let wrench = gravity_free.filter(|wrench| wrench.is_finite()).ok_or(Lack::WristForce)?;
         let tissue_n = sample.tissue_n.ok_or(Lack::TissueForce)?;
@@ -197,12 +194,11 @@ impl Recorder {
         RecorderPhase::Resting { share }
     }
 
-    /// State of the recording.
     pub const fn phase(&self) -> RecorderPhase {
         self.phase
     }
 
-    /// Starts another trajectory with the next row, and requires another rest period, because the rig may have been
+    /// Starts another trajectory with the next row and requires another rest period, because the rig may have been
     /// touched.
     pub fn interrupt(&mut self) {
         self.features.reset();
@@ -211,12 +207,11 @@ impl Recorder {
         self.rest.count = 0.0;
     }
 
-    /// Number of rows.
     pub const fn rows(&self) -> usize {
         self.rows.len()
     }
 
-    /// How well the rows cover the conditions of use.
+    /// Returns how well the rows cover the conditions of use.
     pub const fn coverage(&self) -> &Coverage {
         &self.coverage
     }
@@ -229,8 +224,6 @@ impl Recorder {
         write_atomically(path, |file| self.write(file))
     }
 
-    /// Writes the data set as CSV.
-    ///
     /// # Errors
     /// I/O errors.
     pub fn write(&self, to: &mut dyn io::Write) -> io::Result<()> {

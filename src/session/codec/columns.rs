@@ -1,17 +1,16 @@
-//! Columns of words, packed so that a general compressor finds what repeats.
+//! Columns of words, packed so that a general compressor finds repetitions.
 //!
-//! The words of one field of all ticks of a block stand together. Each column is kept as the way that leaves the fewest bytes:
-//! one word for all, a reference to an equal column, or differences, whose bytes are sorted by their place in the word (byte
-//! shuffle); places that are zero everywhere are left out.
+//! The words of one field of all ticks of a block form a column. Each column is stored in the form that needs the
+//! fewest bytes: one word for all, a reference to an equal column, or differences, whose bytes are sorted by their
+//! position in the word (byte shuffle); positions that are zero everywhere are left out.
 
 use std::collections::HashMap;
 
 use super::{Sink, Source, Wrong};
 
-/// Most words of a column: no block has more ticks.
+/// Maximum number of words of a column: no block has more ticks.
 const WORDS_MAX: u64 = 4096;
 
-/// Columns that are being filled, row by row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
     columns: Vec<Vec<u64>>,
@@ -19,18 +18,16 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Begins the next row.
     pub(crate) fn next_row(&mut self) {
         self.at = 0;
     }
 
-    /// Forgets all words, and keeps the memory.
+    /// Removes all words but keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.columns.iter_mut().for_each(Vec::clear);
         self.at = 0;
     }
 
-    /// Appends the packed columns.
     pub(crate) fn pack(&self, to: &mut Vec<u8>) {
         number(to, self.columns.len() as u64);
         let mut known: HashMap<&[u64], usize> = HashMap::new();
@@ -58,7 +55,7 @@ impl Sink for Columns {
 const EMPTY: u8 = 0;
 const CONSTANT: u8 = 1;
 const AS: u8 = 2;
-/// Three ways of making differences.
+/// Three kinds of differences.
 const XOR: u8 = 3;
 const STEP: u8 = 4;
 const STEP_OF_STEP: u8 = 5;
@@ -120,7 +117,7 @@ fn undone(mut words: Vec<u64>, way: u8) -> Vec<u64> {
     words
 }
 
-/// Small negative steps become small numbers too.
+/// Maps small negative steps to small numbers too.
 const fn folded(step: u64) -> u64 {
     step << 1 ^ 0_u64.wrapping_sub(step >> 63)
 }
@@ -129,12 +126,11 @@ const fn unfolded(word: u64) -> u64 {
     word >> 1 ^ 0_u64.wrapping_sub(word & 1)
 }
 
-/// Columns of a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Unpacked(Vec<Vec<u64>>);
 
 impl Unpacked {
-    /// Reads what [`Columns::pack`] wrote, of at most so many columns.
+    /// Parses the bytes of [`Columns::pack`], of at most this many columns.
     pub(crate) fn of(from: &mut &[u8], most: usize) -> Result<Self, Wrong> {
         let count = take_number(from)?;
         if count > most as u64 {
@@ -148,7 +144,6 @@ impl Unpacked {
         Ok(Self(columns))
     }
 
-    /// Reads them row by row.
     pub(crate) fn rows(&self) -> ColumnsSource<'_> {
         ColumnsSource { columns: &self.0, read: vec![0; self.0.len()], at: 0 }
     }
@@ -186,7 +181,7 @@ fn fits(length: u64) -> Option<usize> {
     usize::try_from(length).ok().filter(|_| length <= WORDS_MAX)
 }
 
-/// Columns that are read row by row.
+/// A row-by-row reader of columns.
 #[derive(Debug)]
 pub(crate) struct ColumnsSource<'a> {
     columns: &'a [Vec<u64>],
@@ -195,12 +190,11 @@ pub(crate) struct ColumnsSource<'a> {
 }
 
 impl ColumnsSource<'_> {
-    /// Begins the next row.
     pub(crate) fn next_row(&mut self) {
         self.at = 0;
     }
 
-    /// Whether every word was read.
+    /// Checks that every word was read.
     pub(crate) fn end(&self) -> Result<(), Wrong> {
         let all = self.columns.iter().zip(&self.read).all(|(column, read)| column.len() == *read);
         if all { Ok(()) } else { Err(Wrong::Long) }
@@ -231,7 +225,7 @@ pub(crate) fn number(to: &mut Vec<u8>, mut number: u64) {
     to.push(number as u8);
 }
 
-/// Reads what [`number`] wrote.
+/// Reads a number written by [`number`].
 pub(crate) fn take_number(from: &mut &[u8]) -> Result<u64, Wrong> {
     let mut number = 0_u64;
     for shift in (0..64).step_by(7) {
@@ -244,7 +238,6 @@ pub(crate) fn take_number(from: &mut &[u8]) -> Result<u64, Wrong> {
     Err(Wrong::NoSuchValue)
 }
 
-/// Takes this many bytes.
 pub(crate) fn bytes<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], Wrong> {
     let (taken, rest) = from.split_at_checked(count).ok_or(Wrong::Short)?;
     *from = rest;

@@ -1,4 +1,4 @@
-//! What is done to the loop between two ticks.
+//! Operations on the loop between two ticks.
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{

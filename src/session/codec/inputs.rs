@@ -1,4 +1,4 @@
-//! What the loop is fed in each tick.
+//! Inputs of the loop in each tick.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -83,7 +83,8 @@ choice!(FarStop {
     10 => Other {},
 });
 
-/// How the endoscope is turned, as the loop uses it. Where its marker is serves the picture alone, and is in the frames that are plotted.
+/// Orientation of the endoscope, as the loop uses it. The position of its marker serves only the display, and is in the
+/// plotted frames.
 enum Turned {
     Fixed,
     Unseen,

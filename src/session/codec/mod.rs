@@ -1,8 +1,8 @@
 //! Values of the loop as words of 64 bits, and back, exact to the bit.
 //!
-//! Every value is taken apart into words in a fixed order; a structure is taken apart by all its fields, so that one which is
-//! added later does not compile until it is handled. The same words go into the columns of a journal and into the digest that
-//! a replay compares. A value that is absent leaves its columns out: each field has columns of its own.
+//! Every value is split into words in a fixed order. A structure is split by all its fields, so that a new field does
+//! not compile until it is handled. The same words go into the columns of a journal and into the digest that a replay
+//! compares. An absent value leaves its columns out: each field has its own columns.
 
 mod columns;
 mod commands;
@@ -13,60 +13,59 @@ pub(crate) use columns::{Columns, Unpacked, bytes, number, take_number};
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
 
-/// Where words go.
+/// A destination of words.
 pub(crate) trait Sink {
-    /// Takes the next word.
     fn word(&mut self, word: u64);
 
     /// Leaves these columns out.
     fn skip(&mut self, columns: usize);
 }
 
-/// Where words come from.
+/// A source of words.
 pub(crate) trait Source {
-    /// The next word.
+    /// Returns the next word.
     ///
     /// # Errors
     /// [`Wrong::Short`] if there is none.
     fn word(&mut self) -> Result<u64, Wrong>;
 
-    /// Passes over columns that were left out.
+    /// Skips columns that were left out.
     fn skip(&mut self, columns: usize);
 }
 
-/// Why words are not what they should be.
+/// Why words cannot be decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Wrong {
     /// Words are missing.
-    #[error("it is shorter than it says")]
+    #[error("it is shorter than it claims")]
     Short,
     /// Words are left over.
-    #[error("it is longer than it says")]
+    #[error("it is longer than it claims")]
     Long,
-    /// A word that stands for nothing.
-    #[error("it holds a value that does not exist")]
+    /// A word without a meaning.
+    #[error("it contains an undefined value")]
     NoSuchValue,
 }
 
-/// What can be taken apart into words.
+/// A value that can be split into words.
 pub(crate) trait Put {
-    /// Columns that it takes, whether they are used or not.
+    /// Number of columns, used or not.
     const COLUMNS: usize;
 
-    /// Hands its words over.
+    /// Writes its words.
     fn put(&self, to: &mut impl Sink);
 }
 
-/// What can be put together again.
+/// A value that can be rebuilt from words.
 pub(crate) trait Take: Put + Sized {
-    /// The value of the next words.
+    /// Reads a value.
     ///
     /// # Errors
-    /// [`Wrong`] if they are none.
+    /// [`Wrong`] if the words are not a value of this type.
     fn take(from: &mut impl Source) -> Result<Self, Wrong>;
 }
 
-/// Rows of words, one after the other: for what is rare.
+/// Rows of words, one after the other: for rare values.
 impl Sink for Vec<u64> {
     fn word(&mut self, word: u64) {
         self.push(word);
@@ -83,7 +82,7 @@ impl Source for std::vec::IntoIter<u64> {
     fn skip(&mut self, _: usize) {}
 }
 
-/// Numbers that are words.
+/// Numbers that fit into a word.
 macro_rules! numbers {
     ($($number:ty),*) => { $(
         impl Put for $number {
@@ -235,7 +234,7 @@ impl Put for UnitVector3<f64> {
 
 impl Take for UnitVector3<f64> {
     fn take(from: &mut impl Source) -> Result<Self, Wrong> {
-        // To the bit: not normalised anew.
+        // Exact to the bit, so not normalised again.
         Vector3::take(from).map(Self::new_unchecked)
     }
 }
@@ -251,7 +250,7 @@ impl Put for UnitQuaternion<f64> {
 impl Take for UnitQuaternion<f64> {
     fn take(from: &mut impl Source) -> Result<Self, Wrong> {
         let [i, j, k, w] = <[f64; 4]>::take(from)?;
-        // To the bit: not normalised anew.
+        // Exact to the bit, so not normalised again.
         Ok(Self::new_unchecked(Quaternion::new(w, i, j, k)))
     }
 }
@@ -280,7 +279,7 @@ macro_rules! record {
             const COLUMNS: usize = 0 $(+ <$kind as Put>::COLUMNS)*;
 
             fn put(&self, to: &mut impl Sink) {
-                // Without `..`: a field that is added does not compile until it is handled here.
+                // Without `..`, so that a new field does not compile until it is handled here.
                 let Self { $($field),* } = self;
                 $($field.put(to);)*
             }
@@ -297,7 +296,8 @@ macro_rules! record {
     };
 }
 
-/// A choice: the number of the variant, then the columns of every variant, of which one's are used.
+/// An enum: the number of the variant, then the columns of every variant, of which only those of the current one are
+/// used.
 macro_rules! choice {
     (put $type:ty { $($tag:literal => $variant:ident { $($field:tt: $name:ident: $kind:ty),* }),* $(,)? }) => {
         impl Put for $type {
@@ -305,7 +305,7 @@ macro_rules! choice {
 
             #[allow(unused_variables, reason = "variants without fields, and the number alone")]
             fn put(&self, to: &mut impl Sink) {
-                // Without `_` and `..`: what is added does not compile until it is handled here.
+                // Without `_` and `..`, so that a new variant or field does not compile until it is handled here.
                 let tag: u64 = match self { $(Self::$variant { $($field: $name),* } => $tag),* };
                 to.word(tag);
                 $(

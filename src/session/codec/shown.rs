@@ -1,4 +1,4 @@
-//! What comes out of the loop: compared by a replay, and shown by screens elsewhere.
+//! Outputs of the loop: compared by a replay, and shown by remote screens.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{

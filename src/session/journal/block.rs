@@ -14,17 +14,17 @@ use crate::{
 
 /// Ticks of a full block: 0.2 s at 1 kHz.
 pub const BLOCK_TICKS: usize = 200;
-/// Most ticks, and most operations, that a block is read with.
+/// Maximum number of ticks, and of operations, of a block that is read.
 const MOST: u64 = 4096;
 
-/// What happened before a tick.
+/// An entry before a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Noted {
-    /// Something was done to the loop.
+    /// An operation on the loop.
     Operation(Operation),
-    /// Entries were dropped here: what comes after cannot be replayed.
+    /// Entries were dropped here: everything after this cannot be replayed.
     Hole {
-        /// How many.
+        /// Number of dropped entries.
         lost: u64,
     },
 }
@@ -34,27 +34,23 @@ choice!(Noted {
     1 => Hole { lost: lost: u64 },
 });
 
-/// One tick: what the loop was given, and the digest of what it returned.
+/// One tick: the inputs of the loop, and the digest of its outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// The times that were handed in.
+    /// The times that were passed in.
     pub timing: Timing,
-    /// The measurements of each side.
     pub inputs: [Option<Inputs>; SIDES],
-    /// The digest.
     pub check: Check,
 }
 
 record!(Row { timing: Timing, inputs: [Option<Inputs>; SIDES], check: Check });
 
-/// Ticks in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// Number of its first tick among those that are in the journal.
+    /// Number of its first tick among all ticks in the journal.
     pub first_tick: u64,
-    /// What happened before which of the rows, in order; beyond the last row: after it.
+    /// The entries before each row, in order; an index beyond the last row means after it.
     pub noted: Vec<(usize, Noted)>,
-    /// The ticks.
     pub rows: Vec<Row>,
 }
 
@@ -73,10 +69,10 @@ impl Block {
     }
 }
 
-/// What happened before which of the rows.
+/// Entries, each with the index of the row that it precedes.
 type Before = Vec<(usize, Noted)>;
 
-/// Number of the first tick, number of rows, and what is noted.
+/// Reads the number of the first tick, the number of rows, and the entries between them.
 fn take_head(from: &mut &[u8]) -> Result<(u64, u64, Before), Wrong> {
     let first_tick = take_number(from)?;
     let rows = take_number(from)?;
@@ -88,7 +84,7 @@ fn take_head(from: &mut &[u8]) -> Result<(u64, u64, Before), Wrong> {
     Ok((first_tick, rows, noted))
 }
 
-/// Entries that were dropped, for each hole in the block with this body.
+/// Returns the number of dropped entries for each gap in the block with this body.
 pub(super) fn holes(mut body: &[u8]) -> Result<Vec<u64>, Wrong> {
     let (.., noted) = take_head(&mut body)?;
     let lost = |(_, noted): (usize, Noted)| if let Noted::Hole { lost } = noted { Some(lost) } else { None };
@@ -107,7 +103,6 @@ fn take_noted(from: &mut &[u8]) -> Result<(usize, Noted), Wrong> {
     if words.len() == 0 { Ok((before, noted)) } else { Err(Wrong::Long) }
 }
 
-/// Collects ticks.
 #[derive(Clone, Debug, Default)]
 pub struct BlockWriter {
     first_tick: u64,
@@ -117,35 +112,33 @@ pub struct BlockWriter {
 }
 
 impl BlockWriter {
-    /// Adds what happens before the next tick.
+    /// Adds an entry before the next tick.
     pub fn note(&mut self, noted: Noted) {
         self.noted.push((self.rows, noted));
     }
 
-    /// Adds a tick.
     pub fn tick(&mut self, row: &Row) {
         self.columns.next_row();
         row.put(&mut self.columns);
         self.rows += 1;
     }
 
-    /// The row of a tick, in which these events were told.
+    /// Makes the row of a tick, in which these events were reported.
     pub fn row<'a>(stepped: &Stepped, events: impl Iterator<Item = &'a Event>) -> Row {
         let check = Check::of(events, &stepped.outputs, &stepped.ticks);
         Row { timing: stepped.timing, inputs: stepped.inputs, check }
     }
 
-    /// Whether the block is to be written.
+    /// Whether the block must be written.
     pub const fn is_full(&self) -> bool {
         self.rows >= BLOCK_TICKS || self.noted.len() >= BLOCK_TICKS
     }
 
-    /// Whether there is nothing in it.
     pub const fn is_empty(&self) -> bool {
         self.rows == 0 && self.noted.is_empty()
     }
 
-    /// Its bytes; it is empty afterwards.
+    /// Returns its bytes and empties it.
     pub(super) fn take(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         number(&mut bytes, self.first_tick);

@@ -1,8 +1,8 @@
 //! The journal of a session: the messages from which the loop is replayed.
 //!
-//! Each message carries the journal's version, its number in the journal and a CRC-32 of its own, so that what is lost or
-//! changed is named wherever it was lost or changed. A [`Start`] comes first, an [`End`] last if the recording was closed;
-//! between them are [`Block`]s of ticks, and calibrations before the block that puts them in force.
+//! Each message carries the journal's version, its number in the journal and its own CRC-32, so that a lost or changed
+//! message is always detected and located. A [`Start`] comes first, an [`End`] last if the recording was closed;
+//! between them are [`Block`]s of ticks, and calibrations before the block that activates them.
 
 mod block;
 mod parts;
@@ -17,60 +17,43 @@ pub use parts::{End, Start};
 use crate::codec::Wrong;
 use parts::Bytes;
 
-/// Version of the journal that this program writes, and the only one that it reads.
+/// Version of the journal that this program writes, and the only version that it reads.
 ///
-/// Version 5 holds the raw readings of the devices and the true time of each tick; with them other plausibility checks, another
-/// governor and unknown forces, so that an older session would end in other forces than those that were felt.
+/// Version 5 holds the raw readings of the devices and the true time of each tick. It came with other plausibility
+/// checks, another governor and unknown forces, so the replay of an older session would give other forces than the hand
+/// felt.
 pub const VERSION: u16 = 5;
 
 const MAGIC: [u8; 4] = *b"NIMJ";
 /// Magic, version, CRC.
 const HEAD: usize = 10;
 
-/// Why a message of a journal cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JournalError {
-    /// It is no message of a journal.
-    #[error("it is no journal of a session of this program")]
+    #[error("it is not a journal of a session of this program")]
     Foreign,
-    /// Another version.
     #[error(
-        "its journal has version {found}, this program reads version {VERSION}, whose gates need readings that older journals lack: replay it with the program that recorded it"
+        "its journal has version {found}, but this program reads version {VERSION}, whose gates need readings that older journals lack; replay it with the program that recorded it"
     )]
-    Version {
-        /// That version.
-        found: u16,
-    },
-    /// The CRC is not that of the content.
-    #[error("its content does not fit its checksum: the file was changed or damaged")]
+    Version { found: u16 },
+    #[error("its content does not match its checksum: the file was changed or damaged")]
     Damaged,
-    /// The content is not what its kind says.
     #[error("its content is wrong: {0}")]
     Wrong(#[from] Wrong),
-    /// A text or file inside cannot be used.
     #[error("its {what} cannot be used: {why}")]
-    Part {
-        /// Which part.
-        what: &'static str,
-        /// Why.
-        why: String,
-    },
+    Part { what: &'static str, why: String },
 }
 
-/// One message.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one at a time")]
 pub enum Message {
-    /// What the loop was made of.
+    /// Origin of the loop.
     Start(Start),
-    /// Calibrations that come into force later, by their number.
+    /// Calibrations that become active later, by their number.
     Calibrations {
-        /// The number by which an operation names them.
         number: u64,
-        /// The calibrations.
         calibrations: Calibrations,
     },
-    /// Ticks.
     Block(Block),
     /// The recording was closed.
     End(End),
@@ -81,25 +64,23 @@ const CALIBRATIONS: u8 = 1;
 const BLOCK: u8 = 2;
 const END: u8 = 3;
 
-/// The bytes of messages, numbered.
+/// Encodes messages and numbers them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Encoder {
     next: u64,
 }
 
 impl Encoder {
-    /// The bytes of what the loop was made of.
+    /// Encodes the origin of the loop.
     ///
     /// # Errors
-    /// [`JournalError::Part`] if a rig or calibration cannot be written so that it reads the same.
+    /// [`JournalError::Part`] if a rig or calibration cannot be written and read back unchanged.
     pub fn start(&mut self, start: &Start) -> Result<Vec<u8>, JournalError> {
         let mut body = Bytes::default();
         start.put(&mut body)?;
         Ok(self.message(START, &body.0))
     }
 
-    /// The bytes of calibrations.
-    ///
     /// # Errors
     /// As [`Encoder::start`].
     pub fn calibrations(&mut self, number: u64, calibrations: &Calibrations) -> Result<Vec<u8>, JournalError> {
@@ -109,12 +90,11 @@ impl Encoder {
         Ok(self.message(CALIBRATIONS, &body.0))
     }
 
-    /// The bytes of the ticks so far; the writer is empty afterwards.
+    /// Encodes the ticks so far and empties the writer.
     pub fn block(&mut self, block: &mut BlockWriter) -> Vec<u8> {
         self.message(BLOCK, &block.take())
     }
 
-    /// The bytes of the end.
     pub fn end(&mut self, end: &End) -> Vec<u8> {
         let mut body = Bytes::default();
         end.put(&mut body);
@@ -134,26 +114,25 @@ impl Encoder {
     }
 }
 
-/// What a message is, without its ticks and calibrations.
+/// A message without its ticks and calibrations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outline {
-    /// What the loop was made of.
+    /// Origin of the loop.
     Start,
-    /// Calibrations that come into force later.
+    /// Calibrations that become active later.
     Calibrations,
-    /// Ticks.
     Block {
-        /// Entries that were dropped, for each hole.
+        /// Number of dropped entries for each gap.
         lost: Vec<u64>,
     },
     /// The recording was closed.
     End(End),
 }
 
-/// The outline of the message of these bytes, for readers that do not replay it.
+/// Returns the outline of a message, for readers that do not replay it.
 ///
 /// # Errors
-/// Those of [`decode`], except for ticks and calibrations, which are not read.
+/// The errors of [`decode`], except for ticks and calibrations, which are not read.
 pub fn outline(bytes: &[u8]) -> Result<Outline, JournalError> {
     let (_, kind, body) = opened(bytes)?;
     Ok(match kind {
@@ -165,18 +144,16 @@ pub fn outline(bytes: &[u8]) -> Result<Outline, JournalError> {
     })
 }
 
-/// The number of the message of these bytes in its journal.
+/// Returns the number of a message in its journal.
 ///
 /// # Errors
-/// Those of [`decode`], except for the content, which is not read.
+/// The errors of [`decode`], except for the content, which is not read.
 pub fn number(bytes: &[u8]) -> Result<u64, JournalError> {
     opened(bytes).map(|(number, ..)| number)
 }
 
-/// The message of these bytes, and its number.
-///
 /// # Errors
-/// [`JournalError`] if they are none, or damaged.
+/// [`JournalError`] if the bytes are not a message, or are damaged.
 pub fn decode(bytes: &[u8]) -> Result<(u64, Message), JournalError> {
     let (number, kind, mut body) = opened(bytes)?;
     let body = &mut body;
@@ -193,7 +170,7 @@ pub fn decode(bytes: &[u8]) -> Result<(u64, Message), JournalError> {
     if body.is_empty() { Ok((number, message)) } else { Err(Wrong::Long.into()) }
 }
 
-/// Number, kind and body of a message.
+/// Returns number, kind and body of a message.
 fn opened(bytes: &[u8]) -> Result<(u64, u8, &[u8]), JournalError> {
     let (head, content) = bytes.split_at_checked(HEAD).ok_or(JournalError::Foreign)?;
     if head[..4] != MAGIC {

@@ -1,4 +1,4 @@
-//! The parts of a journal beside its ticks: what the loop was made of, calibrations, and the end.
+//! The parts of a journal other than its ticks: the origin of the loop, calibrations, and the end.
 
 use nima_core::{
     calibration::gravity::GravityModel,
@@ -29,12 +29,11 @@ impl Bytes {
     }
 }
 
-/// The beginning of a journal.
 #[derive(Clone, Debug)]
 pub struct Start {
     /// Version of the program that recorded it.
     pub program: String,
-    /// What the loop was made of.
+    /// Origin of the loop.
     pub origin: Origin,
 }
 
@@ -66,18 +65,18 @@ impl Start {
     }
 }
 
-/// The text of a rig's settings from which the same rig is read.
+/// Returns a text of a rig's settings that reads back as the same rig.
 fn rig_text(rig: &RigConfig) -> Result<String, JournalError> {
     let part = |why: String| JournalError::Part { what: "rig", why };
     let text = toml::to_string(rig).map_err(|error| part(error.to_string()))?;
     if read_rig(&text)? == without_checked(rig) {
         Ok(text)
     } else {
-        Err(part("it does not read as it was written".to_owned()))
+        Err(part("it does not read back unchanged".to_owned()))
     }
 }
 
-/// The devices of the last ready check are no part of a rig's text, and nothing in the loop depends on them.
+/// The devices of the last ready check are not part of a rig's text, and nothing in the loop depends on them.
 fn without_checked(rig: &RigConfig) -> RigConfig {
     let mut rig = rig.clone();
     rig.remember(None);
@@ -85,16 +84,16 @@ fn without_checked(rig: &RigConfig) -> RigConfig {
 }
 
 fn read_rig(text: &str) -> Result<RigConfig, JournalError> {
-    // With the limits of a rig file: rings and windows are made by them.
+    // With the limits of a rig file, because they bound the sizes of buffers and windows.
     let read = RigConfig::parse("in the journal".as_ref(), text);
     read.map_err(|error| JournalError::Part { what: "rig", why: error.to_string() })
 }
 
-/// Stands for the name of a person.
+/// Replaces the name of a person.
 const WITHHELD: &str = "(withheld)";
 
 pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut Bytes) -> Result<(), JournalError> {
-    // How good a calibration is told to be changes nothing in the loop.
+    // The reported quality of a calibration does not affect the loop.
     let Calibrations { gravity, tip_force, gravity_check: _ } = calibrations;
     let part = |what: &'static str| move |why: String| JournalError::Part { what, why };
     let gravity = gravity.as_ref().map(toml::to_string).transpose();
@@ -105,7 +104,8 @@ pub(super) fn put_calibrations(calibrations: &Calibrations, to: &mut Bytes) -> R
         return Ok(());
     };
     let mut model = tip_force.model().clone();
-    // The name of a person who kept an unproven network changes nothing in the loop, and a session is handed on to others.
+    // The name of the person who accepted an unproven network does not affect the loop, and sessions are shared with
+    // others.
     if let Some(check) = &mut model.origin.check {
         for text in [&mut check.judgement.override_by, &mut check.judgement.override_reason].into_iter().flatten() {
             WITHHELD.clone_into(text);
@@ -149,9 +149,9 @@ pub(super) fn take_calibrations(from: &mut &[u8]) -> Result<Calibrations, Journa
 /// The end of a journal that was closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct End {
-    /// Ticks in it.
+    /// Number of ticks in it.
     pub ticks: u64,
-    /// Entries that were dropped.
+    /// Number of dropped entries.
     pub lost: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Whatever the loop can be fed comes back to the bit; whatever is not a journal is refused.
+//! Every possible input of the loop is read back to the bit; everything that is not a journal is refused.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{
@@ -22,7 +22,7 @@ use proptest::prelude::*;
 use super::{BlockWriter, Encoder, End, JournalError, Message, Noted, Row, Start, VERSION, decode};
 use crate::digest::{Check, STAGES};
 
-/// Numbers as a device, and as a fault, may give them. Compared by their bits.
+/// Numbers that a working or faulty device may return. Compared by their bits.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![4 => -10.0..10.0_f64, 1 => any::<u64>().prop_map(f64::from_bits), 1 => Just(0.0), 1 => Just(-0.0)]
 }
@@ -262,7 +262,7 @@ fn noted() -> BoxedStrategy<Noted> {
     prop_oneof![operation.prop_map(Noted::Operation), any::<u64>().prop_map(|lost| Noted::Hole { lost })].boxed()
 }
 
-/// A block's steps: what is noted before each row.
+/// The steps of a block: the entries before each row, and the row.
 fn steps() -> impl Strategy<Value = Vec<(Vec<Noted>, Row)>> {
     proptest::collection::vec((proptest::collection::vec(noted(), 0..3), row()), 0..12)
 }
@@ -294,7 +294,7 @@ proptest! {
         let (number, message) = decode(&encoded(&steps)).unwrap();
         let Message::Block(block) = message else { panic!("{message:?}") };
         prop_assert_eq!((number, block.first_tick, block.rows.len()), (0, 0, steps.len()));
-        // NaN differs from itself, so that the words are compared: they are the bits.
+        // NaN differs from itself, so compare the words, which are the bits.
         let mut again = BlockWriter::default();
         let mut noted = block.noted.iter().peekable();
         for (i, row) in block.rows.iter().enumerate() {
@@ -324,15 +324,15 @@ proptest! {
         flipped[at.index(whole.len())] ^= 1 << bit;
         prop_assert!(decode(&flipped).is_err());
         prop_assert!(decode(&whole[..cut.index(whole.len())]).is_err());
-        // Whoever mends the checksum gets an error or another block, and no panic.
+        // With a corrected checksum the result is an error or another block, never a panic.
         let crc = crc32fast::hash(&flipped[10..]).to_le_bytes();
         flipped[6..10].copy_from_slice(&crc);
         decode(&flipped).ok();
     }
 }
 
-/// The loop computes with the picture's orientation alone: where the marker is stands in the frames that are plotted, and the journal of
-/// before is read as before.
+/// The loop uses only the orientation of the image. The marker's position is in the plotted frames, and older journals
+/// are read as before.
 #[test]
 fn of_an_endoscopes_marker_the_journal_keeps_how_the_picture_is_turned() {
     let world_from_view = UnitQuaternion::from_euler_angles(0.3, -0.2, 2.0);

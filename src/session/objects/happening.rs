@@ -1,9 +1,9 @@
-//! A happening as a message: JSON, so that any event is one.
+//! An event as a message: JSON, so that it can hold any event.
 
 use nima_core::task::{Event, Happening};
 use serde_json::{Map, Value};
 
-/// Name and JSON schema of the messages. What an event has besides is named as its field.
+/// Name and JSON schema of the messages. Additional properties of an event are named like its fields.
 pub(crate) const SCHEMA_NAME: &str = "nima.Happening";
 /// See [`SCHEMA_NAME`].
 pub(crate) const SCHEMA: &str = r#"{
@@ -24,7 +24,7 @@ pub(crate) const SCHEMA: &str = r#"{
 const TIME: &str = "t_s";
 const EVENT: &str = "event";
 
-/// The bytes of a message. The fields of the event stand beside its name, so that a viewer filters by them.
+/// Encodes a message. The fields of the event are at the same level as its name, so that a viewer can filter by them.
 pub(crate) fn encode(happening: &Happening) -> Vec<u8> {
     let (name, fields) = parts(&happening.event);
     let mut message = fields;
@@ -33,7 +33,7 @@ pub(crate) fn encode(happening: &Happening) -> Vec<u8> {
     Value::Object(message).to_string().into_bytes()
 }
 
-/// The happening of a message; `None` for one that this program does not know.
+/// Decodes a message; `None` for an event that this program does not support.
 pub(crate) fn decode(message: &[u8]) -> Option<Happening> {
     let Ok(Value::Object(mut fields)) = serde_json::from_slice(message) else { return None };
     let t_s = fields.remove(TIME)?.as_f64()?;
@@ -43,13 +43,14 @@ pub(crate) fn decode(message: &[u8]) -> Option<Happening> {
     Some(Happening { t_s, event: serde_json::from_value(event).ok()? })
 }
 
-/// The name of an event for counting: that of its message, with drops out of view apart.
+/// Returns the name under which an event is counted: the name in its message, with drops out of view counted
+/// separately.
 pub fn kind(event: &Event) -> String {
     let (name, _) = parts(event);
     if matches!(event, Event::RingDropped { in_view: false, .. }) { format!("{name}_out_of_view") } else { name }
 }
 
-/// Name and fields of an event, as `serde` writes them.
+/// Returns name and fields of an event, as `serde` writes them.
 fn parts(event: &Event) -> (String, Map<String, Value>) {
     match serde_json::to_value(event) {
         Ok(Value::String(name)) => (name, Map::new()),

@@ -19,10 +19,9 @@ use crate::{
     topics::Topics,
 };
 
-/// After so many blocks of the journal the chunk is closed: 0.4 s at 1 kHz, which is what a kill can cost.
+/// The chunk is closed after this many blocks of the journal: 0.4 s at 1 kHz, the most that a killed process can lose.
 const BLOCKS_PER_CHUNK: u32 = 2;
 
-/// The file and its channels.
 pub(super) struct SessionFile {
     pub(super) out: Outlet,
     journal: Channel,
@@ -61,7 +60,7 @@ impl SessionFile {
     }
 }
 
-/// A time of the loop, s, as that of a message of a session that began at `started_ns`.
+/// Converts a time of the loop, s, to the time of a message in a session that began at `started_ns`.
 pub(super) fn log_time_ns(started_ns: u64, t_s: f64) -> u64 {
     started_ns + (t_s.max(0.0) * 1e9).round() as u64
 }
@@ -83,7 +82,7 @@ impl Pages for SessionFile {
         let t_s = stepped.timing.now_s;
         let time_ns = self.log_time_ns(t_s);
         let started_ns = self.started_ns;
-        // All that the simulation told up to this tick was told before it.
+        // The simulation has reported everything up to this tick before the tick.
         self.topics.objects(&mut self.out, t_s, |t_s| log_time_ns(started_ns, t_s))?;
         self.out.tick(t_s, &stepped.ticks, events);
         Ok(self.topics.tick(&mut self.out, time_ns, stepped, events)?)

@@ -1,4 +1,4 @@
-//! What the recorder's thread tells.
+//! Status of the recorder's thread.
 
 use std::{
     sync::{
@@ -10,27 +10,27 @@ use std::{
 
 use super::RecordError;
 
-/// Figures of a recording so far.
+/// Statistics of a recording so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// Ticks that were taken.
+    /// Recorded ticks.
     pub ticks: u64,
-    /// Entries that the loop dropped, because this thread came too late.
+    /// Entries that the loop dropped because this thread was too slow.
     pub lost: u64,
     /// Bytes in the file.
     pub bytes: u64,
-    /// Pictures of the endoscope that were written, ...
+    /// Endoscope images that were written, ...
     pub pictures: u64,
-    /// ... and those that were dropped, because this thread came too late.
+    /// ... and those that were dropped because this thread was too slow.
     pub pictures_dropped: u64,
-    /// How long the disk has not answered; after two seconds the loop drops entries.
+    /// How long the disk has not responded; after two seconds the loop drops entries.
     pub waits: Duration,
 }
 
 #[derive(Debug)]
 pub(super) struct Shared {
     began: Instant,
-    /// When the thread looked for entries last, ms since it began.
+    /// When the thread last checked for entries, ms since it began.
     looked_ms: AtomicU64,
     pub(super) ticks: AtomicU64,
     pub(super) lost: AtomicU64,
@@ -56,7 +56,7 @@ impl Shared {
         }
     }
 
-    /// The thread looks for entries now.
+    /// Notes that the thread checks for entries now.
     pub(super) fn looked(&self) {
         self.looked_ms.store(self.ms(), Ordering::Relaxed);
     }

@@ -1,4 +1,4 @@
-//! Writes a session file to the disk each second.
+//! Writes a session file to the disk every second.
 
 use std::{
     fs::File,
@@ -11,10 +11,10 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::RecordError;
 
-/// The file is synchronised with the disk this often.
+/// Interval between two syncs of the file.
 const SYNC_EVERY: Duration = Duration::from_secs(1);
 
-/// The thread that writes the file to the disk each second, so that the loss of power costs no more.
+/// The thread that syncs the file every second, so that a power loss costs no more than that.
 #[derive(Debug)]
 pub(crate) struct Sync {
     ends: Option<Sender<()>>,
@@ -36,12 +36,12 @@ impl Sync {
         Ok(Self { ends: Some(ends), failure, thread: Some(thread) })
     }
 
-    /// Why the disk has not taken what was written; told once.
+    /// Returns once why the disk has not accepted the data.
     pub(crate) fn failed(&self) -> Option<io::Error> {
         self.failure.try_recv().ok()
     }
 
-    /// Ends it without waiting for the disk.
+    /// Ends the thread without waiting for the disk.
     pub(crate) fn leave(mut self) {
         drop(self.thread.take());
     }

@@ -1,4 +1,4 @@
-//! The loop of a session at one of its ticks, which moves on tick by tick.
+//! The loop of a session at one of its ticks, which advances tick by tick.
 
 use nima_machine::{
     messages::{Event, Tick},
@@ -12,31 +12,31 @@ use crate::{
     journal::{Row, Start},
 };
 
-/// A loop that moves through a journal.
+/// A loop that advances through a journal.
 #[derive(Debug)]
 pub struct Cursor<I> {
     journal: Journal<I>,
     machine: Machine,
-    /// Calibrations that came into force since the last tick.
+    /// Calibrations that became active since the last tick.
     in_force: Vec<(Side, u64)>,
-    /// The last tick takes kilobytes, and stays where it is: to move it about takes as long as a part of the loop.
+    /// Boxed, because the last tick has kilobytes, and moving it would take as long as a stage of the loop.
     came: Box<Came>,
     ticks: u64,
     t_s: f64,
 }
 
-/// A loop between two blocks of its journal, from which a cursor can go on.
+/// State of a loop between two blocks of its journal. A cursor can continue from it.
 #[derive(Clone, Debug)]
 pub struct Keyframe {
     machine: Machine,
-    /// Messages of the journal that were read.
+    /// Number of journal messages that were read.
     read: u64,
     ticks: u64,
     t_s: f64,
 }
 
 impl Keyframe {
-    /// Before the first tick of a journal with this beginning.
+    /// The state before the first tick of a journal with this beginning.
     ///
     /// # Errors
     /// [`ReplayError::Settings`] if the settings of the identification are invalid.
@@ -44,7 +44,7 @@ impl Keyframe {
         Ok(Self { machine: Machine::new(&start.origin)?, read: 1, ticks: 0, t_s: 0.0 })
     }
 
-    /// A cursor here, in a journal with this beginning; `messages` are those behind the [`Self::read`] ones.
+    /// Makes a cursor here, in a journal with this beginning; `messages` are those after the first [`Self::read`] ones.
     pub fn cursor<I>(self, start: Start, messages: I) -> Cursor<I> {
         let Self { machine, read, ticks, t_s } = self;
         Cursor {
@@ -57,7 +57,7 @@ impl Keyframe {
         }
     }
 
-    /// Messages of the journal before it.
+    /// Number of journal messages before it.
     pub const fn read(&self) -> u64 {
         self.read
     }
@@ -68,18 +68,17 @@ impl Keyframe {
     }
 }
 
-/// What a cursor comes to.
+/// One step of a cursor.
 #[derive(Debug)]
 pub enum Passed<'a> {
-    /// A tick.
     Tick(Moment<'a>),
-    /// Entries are missing: what comes after them cannot be replayed.
+    /// Entries are missing: everything after them cannot be replayed.
     Hole(Hole),
     /// The recording was closed.
     Closed,
 }
 
-/// What comes out of a tick.
+/// Outputs of a tick.
 #[derive(Debug)]
 struct Came {
     in_force: Vec<(Side, u64)>,
@@ -99,20 +98,20 @@ impl Default for Came {
 pub struct Moment<'a> {
     /// Its number in the journal, from 0.
     pub number: u64,
-    /// What the loop was given.
+    /// The inputs of the loop.
     pub row: &'a Row,
-    /// Calibrations that came into force before it: the side, and their number in the journal.
+    /// Calibrations that became active before it: the side, and their number in the journal.
     pub in_force: &'a [(Side, u64)],
-    /// What it told.
+    /// The events reported in it.
     pub events: &'a [Event],
-    /// Its commands.
+    /// The commands of the loop.
     pub outputs: &'a [Outputs; SIDES],
-    /// What it shows.
+    /// The displayed state.
     pub ticks: &'a [Option<Tick>; SIDES],
 }
 
 impl Moment<'_> {
-    /// Where it is not as it was recorded.
+    /// Returns where it differs from the recording, if it does.
     pub fn differs(&self) -> Option<Differs> {
         let Self { number, row, events, outputs, ticks, in_force: _ } = self;
         let check = Check::of(events.iter(), outputs, ticks);
@@ -121,7 +120,7 @@ impl Moment<'_> {
 }
 
 impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Cursor<I> {
-    /// At the beginning of a journal.
+    /// Starts at the beginning of a journal.
     ///
     /// # Errors
     /// [`ReplayError::Settings`] if the settings of the identification are invalid.
@@ -130,18 +129,18 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Cursor<I> {
         Ok(Self { journal, machine, in_force: Vec::new(), came: Box::default(), ticks: 0, t_s: 0.0 })
     }
 
-    /// Whether a block of the journal has just been passed.
+    /// Whether a block of the journal has just been completed.
     pub fn is_between_blocks(&self) -> bool {
         self.journal.between_blocks().is_some()
     }
 
-    /// The loop as it is now, if a block of the journal has just been passed.
+    /// Returns the current loop, if a block of the journal has just been completed.
     pub fn keyframe(&self) -> Option<Keyframe> {
         let read = self.journal.between_blocks()?;
         Some(Keyframe { machine: self.machine.clone(), read, ticks: self.ticks, t_s: self.t_s })
     }
 
-    /// Moves on; `None` at the end of the journal.
+    /// Advances; `None` at the end of the journal.
     ///
     /// # Errors
     /// [`ReplayError`] if the journal cannot be read.

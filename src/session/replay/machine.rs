@@ -22,7 +22,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// A loop made of this.
+    /// Builds a loop.
     ///
     /// # Errors
     /// [`SettingsError`] if the settings of the identification are invalid.
@@ -31,12 +31,12 @@ impl Machine {
         Ok(Self { control: origin.control()?, calibrations: BTreeMap::new(), period_s })
     }
 
-    /// Keeps calibrations that come into force later.
+    /// Stores calibrations that become active later.
     pub fn know(&mut self, number: u64, calibrations: Calibrations) {
         self.calibrations.insert(number, calibrations);
     }
 
-    /// Does what was done to the loop before this tick.
+    /// Applies the operation that preceded this tick.
     ///
     /// # Errors
     /// [`ReplayError::NoCalibrations`] if they were not in the journal.
@@ -55,17 +55,16 @@ impl Machine {
         Ok(())
     }
 
-    /// One tick.
     pub fn step(&mut self, row: &Row) -> ([Outputs; SIDES], [Option<Tick>; SIDES]) {
         self.control.step(row.inputs, &row.timing)
     }
 
-    /// These ticks, between which nothing is done to the loop; those before `from_s` (s) are not compared.
+    /// Steps over these ticks, between which there is no operation; those before `from_s` (s) are not compared.
     pub(super) fn run(&mut self, rows: &[Vec<Row>], from_s: f64) -> Result<Ran, ReplayError> {
         Ran::of(&mut self.control, rows, from_s)
     }
 
-    /// The events of this tick; to be called after every tick.
+    /// Returns the events of this tick; call it after every tick.
     pub fn take_events(&mut self, into: &mut Vec<Event>) {
         into.clear();
         into.extend(self.control.events().copied());

@@ -1,4 +1,4 @@
-//! Replays a journal through the loop that recorded it: the same code, the same inputs, so the same bits.
+//! Replays a journal through the loop that recorded it: the same code and the same inputs, so the same bits.
 
 mod cursor;
 mod machine;
@@ -22,79 +22,73 @@ use nima_recording::session::ReadError;
 
 use crate::{digest::Stage, journal::JournalError};
 
-/// Why a session cannot be replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    /// A message of the journal cannot be read.
     #[error("message {place} of its journal: {source}")]
     Message { place: u64, source: JournalError },
-    /// Messages are missing.
     #[error("message {place} of its journal is missing: the file was cut or damaged")]
     Missing { place: u64 },
-    /// There is no beginning.
-    #[error("its journal does not say what the loop was made of: the file was cut or damaged")]
+    #[error("its journal has no beginning: the file was cut or damaged")]
     NoStart,
-    /// There is no journal at all.
-    #[error("it holds no journal: only a session that was recorded with `nima run --record` can be replayed")]
+    #[error("it has no journal; only sessions recorded with `nima run --record` can be replayed")]
     NoJournal,
-    /// An operation names calibrations that are not there.
-    #[error("calibrations number {number} come into force at tick {tick}, and the file does not have them")]
+    #[error(
+        "calibrations number {number} become active at tick {tick}, but the file does not contain them: it was cut or damaged"
+    )]
     NoCalibrations { number: u64, tick: u64 },
-    /// The settings of the rig are not usable, as recorded or as changed.
+    /// The settings of the rig, as recorded or as changed, are not usable.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The file itself.
     #[error(transparent)]
     File(#[from] ReadError),
-    /// The operating system gives no thread.
     #[error("cannot start the thread that reads the journal: {0}; end other programs, then try again")]
     Thread(#[source] io::Error),
 }
 
-/// The first tick that is not as it was recorded.
+/// The first tick that differs from the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Differs {
     /// Its number in the journal, from 0.
     pub tick: u64,
     /// Its time on the loop's clock, s.
     pub t_s: f64,
-    /// The first part of the tick that differs; `None`: an event does.
+    /// The first stage of the tick that differs; `None` if an event differs.
     pub place: Option<(Side, Stage)>,
 }
 
-/// Entries that are missing in the journal: from there on nothing can be replayed.
+/// A gap in the journal: from there on nothing can be replayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hole {
-    /// Ticks before it.
+    /// Number of ticks before it.
     pub tick: u64,
-    /// Entries that were dropped.
+    /// Number of dropped entries.
     pub lost: u64,
 }
 
-/// How a replay ended.
+/// Result of a replay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Ticks that were replayed and compared.
     pub ticks: u64,
-    /// Ticks before them that were replayed only.
+    /// Earlier ticks that were only replayed.
     pub before: u64,
-    /// Loop time of the last one, s.
+    /// Loop time of the last tick, s.
     pub seconds: f64,
     /// The first tick that differs; the replay ends there.
     pub differs: Option<Differs>,
-    /// Where the journal has a hole; the replay ends there.
+    /// The gap at which the replay ended.
     pub hole: Option<Hole>,
-    /// The recording was closed; if not, it was killed, or the file was cut.
+    /// Whether the recording was closed; if not, the program was killed, or the file was cut.
     pub closed: bool,
 }
 
-/// Whether a tick at this loop time (s) is not before a moment: times in the file are whole nanoseconds.
+/// Whether a tick at this loop time (s) is not before a moment; allows for the whole nanoseconds of times in the file.
 fn is_from(now_s: f64, moment_s: f64) -> bool {
     (now_s * 1e9).round() >= (moment_s * 1e9).round()
 }
 
-/// Replays a journal to its end, to its first hole or to the first tick that differs. `each` is called with every tick; where only the
-/// outcome matters, [`verify`] is faster.
+/// Replays a journal to its end, to its first gap or to the first tick that differs. `each` is called with every tick;
+/// if only the outcome matters, [`verify`] is faster.
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.

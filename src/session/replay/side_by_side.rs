@@ -1,9 +1,9 @@
-//! A run of ticks with both arms side by side, each on a thread of its own.
+//! Runs the ticks of both arms in parallel, one thread for each arm.
 //!
-//! Between two operations a pair gets one thing from the other one: whether that had failed after the tick before. Nearly always nothing
-//! changes there: so each is stepped as if it did not, and if it did after all, both begin anew from copies that were made before, one
-//! after the other. What comes out is to the bit what [`Loop::step`] makes. To wait for each other at every tick would be faster on a
-//! computer that does nothing else, and slower than one thread on a busy one.
+//! Between two operations the arms share one input: whether the other arm had failed after the previous tick. It rarely
+//! changes. So each arm is stepped as if it did not change; if it did, both are restarted from earlier copies and
+//! stepped one after the other. The result equals that of [`Loop::step`] to the bit. Synchronising the threads at every
+//! tick would be faster on an idle computer, but slower than one thread on a busy one.
 
 use std::{
     io,
@@ -22,10 +22,10 @@ use crate::{
     journal::Row,
 };
 
-/// Fewer ticks are not worth the copies, each of 13 MB.
+/// With fewer ticks the copies, each of 13 MB, cost more than they save.
 const LEAST_TICKS: usize = 2000;
 
-/// What comes out of a run of ticks.
+/// Outputs of a run of ticks.
 #[derive(Debug)]
 pub(super) struct Ran {
     /// Commands that were refused before its first tick.
@@ -33,17 +33,18 @@ pub(super) struct Ran {
     sides: [Lane; SIDES],
 }
 
-/// What comes out on one side.
+/// Outputs of one side.
 #[derive(Debug, Default)]
 struct Lane {
-    /// Of each tick that is compared.
+    /// One per compared tick.
     digests: Vec<[u64; STAGES]>,
-    /// With the number of their tick in the run.
+    /// With the index of their tick in the run.
     events: Vec<(usize, Event)>,
 }
 
 impl Ran {
-    /// Steps the loop with these rows; those before `from_s` (loop time, s) are not compared, so no digest is made of them.
+    /// Steps the loop with these rows. Rows before `from_s` (loop time, s) are not compared, so their digests are not
+    /// computed.
     pub(super) fn of(control: &mut Loop, rows: &[Vec<Row>], from_s: f64) -> Result<Self, ReplayError> {
         let refused = control.refusals().copied().collect();
         let sides = match control.pairs_mut() {
@@ -57,7 +58,7 @@ impl Ran {
         Ok(Self { refused, sides })
     }
 
-    /// What is to be compared with each of the rows that are compared: the number of the row, itself, and its check now.
+    /// Returns, for each row that is compared, its index, the row, and its newly computed check.
     pub(super) fn checks<'a>(
         &'a self,
         rows: &'a [Vec<Row>],
@@ -106,7 +107,7 @@ fn of_one(pair: &mut Pair, rows: &[Vec<Row>], from_s: f64) -> Lane {
     lane
 }
 
-/// Each on a thread of its own, if that is worth it and right; else one after the other.
+/// Steps each pair on its own thread if that is faster and correct; otherwise one after the other.
 fn both(pairs: [&mut Box<Pair>; SIDES], rows: &[Vec<Row>], from_s: f64) -> Result<[Lane; SIDES], ReplayError> {
     let [right, left] = pairs;
     if rows.iter().map(Vec::len).sum::<usize>() >= LEAST_TICKS {
@@ -138,9 +139,9 @@ fn both(pairs: [&mut Box<Pair>; SIDES], rows: &[Vec<Row>], from_s: f64) -> Resul
 /// A pair that was stepped without the other one.
 struct Alone {
     lane: Lane,
-    /// As it was before.
+    /// Copy from before the run.
     before: Box<Pair>,
-    /// It failed or recovered before the last tick: the other one has to know.
+    /// It failed or recovered before the last tick, so the other pair must be stepped again.
     changes: bool,
 }
 

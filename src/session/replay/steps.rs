@@ -10,20 +10,19 @@ use crate::journal::{Block, End, Message, Noted, Row, Start, decode, number};
 /// One step of a journal.
 #[derive(Debug)]
 pub enum Step {
-    /// Something is done to the loop.
+    /// An operation on the loop.
     Operation(Operation),
-    /// Calibrations that come into force later.
+    /// Calibrations that become active later.
     Calibrations {
         /// The number by which an operation names them.
         number: u64,
-        /// The calibrations.
         calibrations: Box<Calibrations>,
     },
     /// The loop is stepped with [`Journal::row`].
     Tick,
     /// Entries are missing here.
     Hole {
-        /// How many.
+        /// Number of missing entries.
         lost: u64,
     },
     /// The recording was closed.
@@ -33,13 +32,13 @@ pub enum Step {
 /// A part of a journal.
 #[derive(Debug)]
 pub enum Part {
-    /// Ticks between which nothing happens.
+    /// Ticks without an operation between them.
     Ticks(Vec<Row>),
-    /// What happens between them.
+    /// A step between ticks.
     Between(Step),
 }
 
-/// A journal whose beginning has been read: its steps.
+/// The steps of a journal whose beginning has been read.
 #[derive(Debug)]
 pub struct Journal<I> {
     messages: I,
@@ -53,14 +52,14 @@ pub struct Journal<I> {
 struct Open {
     rows: Vec<Row>,
     noted: Peekable<vec::IntoIter<(usize, Noted)>>,
-    /// Rows that were taken.
+    /// Rows that were read.
     passed: usize,
 }
 
 /// A message of a journal, and its number.
 pub type Numbered = (u64, Message);
 
-/// Messages of a journal from anywhere.
+/// Messages of a journal from any source.
 pub type Messages = Box<dyn Iterator<Item = Result<Numbered, ReplayError>> + Send>;
 
 impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
@@ -77,7 +76,7 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
         }
     }
 
-    /// The next step, or all ticks up to it at once.
+    /// Returns the next step, or all ticks before it at once.
     pub fn next_part(&mut self) -> Option<Result<Part, ReplayError>> {
         Some(match self.next()? {
             Ok(Step::Tick) => Ok(Part::Ticks(self.open.as_mut().map(Open::run).unwrap_or_default())),
@@ -85,12 +84,12 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
         })
     }
 
-    /// What the loop was made of.
+    /// Origin of the loop.
     pub const fn start(&self) -> &Start {
         &self.start
     }
 
-    /// Messages that were read, if all their steps were taken: a place from which [`go_on`] can read.
+    /// Returns the number of messages read, if all their steps were taken: a position from which [`go_on`] can read.
     pub fn between_blocks(&self) -> Option<u64> {
         match &self.open {
             Some(open) if !open.is_read() => None,
@@ -98,15 +97,15 @@ impl<I: Iterator<Item = Result<Numbered, ReplayError>>> Journal<I> {
         }
     }
 
-    /// What the loop is stepped with, if the last step was a tick. It stays where it is, because it takes a kilobyte.
+    /// Returns the inputs of the loop if the last step was a tick. A reference, because it has a kilobyte.
     pub fn row(&self) -> Option<&Row> {
         let open = self.open.as_ref()?;
         open.rows.get(open.passed.checked_sub(1)?)
     }
 }
 
-/// The messages of these bytes behind the first `read` of the journal; the bytes may begin with some of those, and one that was there
-/// already is passed over: of a recording that went on in another place, both files may have it.
+/// Decodes the messages of these bytes after the first `read` of the journal. The bytes may begin with some of those,
+/// and duplicates are skipped: if a recording continued in another location, both files may have them.
 pub fn decoded(
     bytes: impl Iterator<Item = Result<Vec<u8>, ReplayError>>,
     read: u64,
@@ -124,7 +123,8 @@ pub fn decoded(
     })
 }
 
-/// The steps of a journal with this beginning behind its first `read` messages, which are these.
+/// Returns the steps of a journal with this beginning after its first `read` messages; `messages` are the ones that
+/// follow.
 pub(super) const fn go_on<I>(messages: I, start: Start, read: u64) -> Journal<I> {
     Journal { messages, read, start, open: None }
 }
@@ -177,7 +177,7 @@ impl Open {
         Some(Step::Tick)
     }
 
-    /// The tick that [`Open::next`] came to and those up to the next thing that happens.
+    /// Returns the tick that [`Open::next`] reached and those up to the next operation.
     fn run(&mut self) -> Vec<Row> {
         let first = self.passed.saturating_sub(1);
         let last = self.rows.len();

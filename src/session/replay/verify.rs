@@ -1,4 +1,4 @@
-//! Compares a session with its replay, as fast as this computer can.
+//! Compares a session with its replay at full speed.
 
 use std::{mem::take, ops::Range};
 
@@ -7,12 +7,12 @@ use super::{
 };
 use crate::journal::Row;
 
-/// Ticks that are stepped at once, some 25 MB of measurements: enough that copies of the loop do not count.
+/// Ticks that are stepped at once, about 25 MB of measurements: enough that copies of the loop do not matter.
 const RUN_TICKS: usize = 16_000;
 
-/// Replays a journal and compares the ticks of a stretch (loop time, s) with those that were recorded, up to its first hole or the first
-/// tick that differs. What is before the stretch is replayed without comparing, because each tick depends on all before it; what is
-/// behind is not read. `passed` is called with the number of ticks so far.
+/// Replays a journal and compares the ticks within a range (loop time, s) with the recorded ones, up to its first gap
+/// or the first tick that differs. Ticks before the range are replayed without comparison, because each tick depends on
+/// all earlier ones; ticks after it are not read. `passed` is called with the number of ticks so far.
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read.
@@ -29,7 +29,7 @@ pub fn verify<I: Iterator<Item = Result<Numbered, ReplayError>>>(
         match part {
             Ok(Part::Ticks(rows)) => verifier.add(rows)?,
             other => {
-                // In their order: a difference before a message that cannot be read comes first.
+                // In order: a difference before an unreadable message comes first.
                 verifier.run()?;
                 if !verifier.is_over {
                     verifier.step(other?)?;
@@ -48,7 +48,7 @@ struct Verifier<'a, F> {
     machine: Machine,
     stretch_s: &'a Range<f64>,
     passed: F,
-    /// Ticks between which nothing is done to the loop.
+    /// Ticks without an operation between them.
     rows: Vec<Vec<Row>>,
     outcome: Outcome,
     is_over: bool,

@@ -1,8 +1,8 @@
-//! The same session with one thing changed.
+//! Replays a session with one setting changed.
 //!
-//! Both loops get the recorded inputs. That is all that a recording can tell: with another force the hand would have moved
-//! otherwise, and so would the tissue's force. What is compared is what the hand would have felt at each moment, had it moved
-//! as it did.
+//! Both loops get the recorded inputs. A recording cannot show more: with another force the hand would have moved
+//! differently, and so the tissue's force would have differed too. The comparison shows the force that the hand would
+//! have felt at each moment if it had moved as it did.
 
 use std::ops::Range;
 
@@ -17,24 +17,24 @@ use nima_machine::{
 
 use super::{Hole, Journal, Machine, Numbered, ReplayError, Step, is_from};
 
-/// What is changed; `None` leaves it as it was. A setting that is changed stays so: commands that would set it are left out.
+/// The changed settings; `None` leaves a setting as recorded. A changed setting stays so: commands that would set it
+/// are ignored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Change {
-    /// The mode.
     pub mode: Option<Mode>,
-    /// The delay of the link, s.
+    /// Delay of the link, s.
     pub delay_s: Option<f64>,
     /// The operator's gain, 0 to 1.
     pub gain: Option<f64>,
 }
 
 impl Change {
-    /// Whether anything is changed.
+    /// Whether any setting is changed.
     pub fn is_any(&self) -> bool {
         *self != Self::default()
     }
 
-    /// What the changed loop is made of.
+    /// Returns the origin of the changed loop.
     fn origin(&self, origin: &Origin) -> Origin {
         let mut origin = origin.clone();
         let rig = &mut origin.rig;
@@ -55,20 +55,19 @@ impl Change {
     }
 }
 
-/// Mean, square mean and largest of vectors' lengths, N.
+/// Mean, mean square and maximum of vectors' lengths, N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Vectors.
+    /// Number of vectors.
     pub count: u64,
-    /// Mean length, N.
     pub mean_n: f64,
-    /// Largest length, N.
+    /// Maximum length, N.
     pub max_n: f64,
     squares_n2: f64,
 }
 
 impl Difference {
-    /// One that is not finite is left out: a force was not known.
+    /// Adds a vector. A vector that is not finite is left out: the force was unknown.
     fn add(&mut self, difference_n: &Vector3<f64>) {
         let length_n = difference_n.norm();
         if !length_n.is_finite() {
@@ -80,18 +79,18 @@ impl Difference {
         self.squares_n2 += (length_n * length_n - self.squares_n2) / self.count as f64;
     }
 
-    /// Root of the mean square, N.
+    /// Root mean square, N.
     pub fn rms_n(&self) -> f64 {
         self.squares_n2.sqrt()
     }
 }
 
-/// One side of a comparison; forces over the ticks in which both loops were engaged.
+/// Comparison of one side; forces over the ticks in which both loops were engaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Compared {
     /// Ticks in which both were engaged.
     pub engaged: u64,
-    /// Ticks in which only one was.
+    /// Ticks in which only one was engaged.
     pub apart: u64,
     /// Rendered force: changed minus recorded.
     pub rendered: Difference,
@@ -101,9 +100,9 @@ pub struct Compared {
     pub changed_error: Difference,
 }
 
-/// Feeds a journal to the loop that recorded it and to a changed one, both from its beginning, and compares them within a stretch (loop
-/// time, s). `each` is called with both loops' ticks of each side. Returns the comparison of each side that the rig has, the number of
-/// ticks in the stretch, and the hole at which it ended, if there is one.
+/// Feeds a journal to the loop that recorded it and to a changed one, both from its beginning, and compares them within
+/// a range (loop time, s). `each` is called with both loops' ticks of each side. Returns the comparison of each side of
+/// the rig, the number of ticks in the range, and the gap at which it ended, if there is one.
 ///
 /// # Errors
 /// [`ReplayError`] if the journal cannot be read or the changed settings are not usable.

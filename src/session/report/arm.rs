@@ -1,4 +1,4 @@
-//! The figures of one arm.
+//! Statistics of one arm.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -12,88 +12,83 @@ use super::{
     trace::Trace,
 };
 
-/// Numbers of the states in the file that figures depend on.
+/// Numbers of the states, as stored in the file, that affect the statistics.
 const ENGAGED: u8 = 3;
-/// States, from disconnected to faulted.
+/// From disconnected to faulted.
 pub const STATES: usize = crate::topics::STATES.len();
-/// Samples this much farther apart do not follow each other, s: some are missing.
+/// Samples farther apart than this are not contiguous, s: some are missing.
 const HOLE_S: f64 = 0.02;
 /// Columns of the degrees in the file: anchored, matched, nima, the paper's choice.
 pub const DEGREE_COLUMNS: [&str; 4] = ["anchored", "matched", "nima", "paper"];
 
-/// One state, from its beginning to its end.
+/// A period in one state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Span {
-    /// Its number: 0 disconnected, 1 idle, 2 ready, 3 engaged, 4 clutched, 5 stopped, 6 faulted.
+    /// 0 disconnected, 1 idle, 2 ready, 3 engaged, 4 clutched, 5 stopped, 6 faulted.
     pub state: u8,
-    /// Its beginning, s from that of the session.
+    /// Begin, s since the session's begin.
     pub from_s: f64,
-    /// Its end, s.
+    /// End, s.
     pub to_s: f64,
 }
 
-/// What one gate did.
+/// Activity of one gate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GateShare {
-    /// The gate.
     pub gate: Gate,
-    /// Share of the engaged time in which it acted, 0 to 1; the first gate: of all time.
+    /// Fraction of the engaged time in which it acted, 0 to 1; for the first gate, fraction of all time.
     pub share: f64,
 }
 
-/// What the identification and the network say of themselves, while engaged.
+/// Statistics of the identification and the network while engaged.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Identified {
-    /// Mean error at the horizon of each mode that was computed, N; the last one is the baseline.
+    /// Mean prediction error at the horizon of each computed mode, N; the last one is the baseline.
     pub error_n: [Option<f64>; SLOTS],
-    /// Shares of the degrees 0 to 5 for each of [`DEGREE_COLUMNS`], where they were computed.
+    /// Fractions of the degrees 0 to 5 for each of [`DEGREE_COLUMNS`], where they were computed.
     pub degree_shares: [Option<[f64; MAX_DEGREE + 1]>; DEGREE_COLUMNS.len()],
-    /// Share of the time in which there was nothing to learn from, 0 to 1.
+    /// Fraction of the time without motion to learn from, 0 to 1.
     pub resting_share: f64,
-    /// The network, if there was one.
+    /// `None` without a network.
     pub network: Option<NetworkFigures>,
 }
 
-/// How sure the network was, while engaged.
+/// Uncertainty of the network while engaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct NetworkFigures {
-    /// Its mean share in the force, 0 to 1.
+    /// Its mean weight in the force, 0 to 1.
     pub share: f64,
-    /// Share of the time outside of its training, 0 to 1.
+    /// Fraction of the time outside its training data, 0 to 1.
     pub outside_share: f64,
-    /// Largest distance from its training, 1 at its limit.
+    /// Maximum distance from its training data, 1 at its limit.
     pub doubt_max: f64,
 }
 
-/// All figures of an arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmFigures {
     /// `right` or `left`.
     pub side: &'static str,
-    /// Its states in order.
     pub states: Vec<Span>,
-    /// Time in each state, s.
+    /// s.
     pub seconds: [f64; STATES],
     /// Measured, delayed and rendered force while engaged.
     pub forces: [Option<ForceFigures>; 3],
     /// Lengths of these forces over time, N.
     pub traces: [Trace; 3],
-    /// The gates.
     pub gates: Vec<GateShare>,
-    /// Least energy that the hand might still get back, J.
+    /// Minimum energy that the hand might still get back, J.
     pub stored_least_j: f64,
     /// Mean force that the dead band withheld while engaged, N.
     pub withheld_mean_n: f64,
-    /// The largest, N.
+    /// Maximum of that force, N.
     pub withheld_max_n: f64,
-    /// The identification, where the file has it.
+    /// `None` if the file does not have it.
     pub identified: Option<Identified>,
 }
 
 /// Names of the forces in [`ArmFigures::forces`].
 pub const FORCES: [&str; 3] = ["measured", "delayed", "rendered"];
 
-/// Collects the figures of an arm.
 pub(super) struct Arm {
     figures: ArmFigures,
     period_s: f64,
@@ -137,7 +132,7 @@ impl Arm {
         }
     }
 
-    /// Takes measured, delayed, asked and rendered force of a tick, N; its gates follow.
+    /// Adds measured, delayed, requested and rendered force of a tick, N; its gates follow.
     pub(super) fn forces(&mut self, t_s: f64, values: &[f64]) {
         if let [mx, my, mz, dx, dy, dz, _, _, _, rx, ry, rz] = *values {
             let forces = [Vector3::new(mx, my, mz), Vector3::new(dx, dy, dz), Vector3::new(rx, ry, rz)];
@@ -148,7 +143,7 @@ impl Arm {
         }
     }
 
-    /// Takes the gates and the state of a tick.
+    /// Adds the gates and the state of a tick.
     pub(super) fn gates(&mut self, t_s: f64, values: &[f64]) {
         let Some((acted, &[_gain, stored_j, withheld_n, _governed, state])) = values.split_at_checked(GATES) else {
             return;
@@ -191,7 +186,7 @@ impl Arm {
         }
     }
 
-    /// Takes what the identification says, ten times a second.
+    /// Adds a sample of the identification, ten times a second.
     pub(super) fn identified(&mut self, values: &[f64]) {
         self.identified.is_there = true;
         if self.last_engaged {
@@ -214,7 +209,7 @@ impl Arm {
     }
 }
 
-/// Sums of numbers that are there.
+/// Mean of the values that are present.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     sum: f64,
@@ -234,7 +229,7 @@ impl Mean {
     }
 }
 
-/// What was sampled of the identification.
+/// Samples of the identification.
 #[derive(Clone, Debug, Default)]
 struct Sampled {
     is_there: bool,

@@ -3,16 +3,15 @@
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde::Serialize;
 
-/// Figures of one force while the arm is engaged.
+/// Statistics of one force while the arm is engaged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ForceFigures {
-    /// Samples.
+    /// Number of samples.
     pub samples: u64,
-    /// Largest length, N.
+    /// Maximum length, N.
     pub peak_n: f64,
-    /// When, s from the beginning of the session.
+    /// Time of the maximum, s since the session's begin.
     pub peak_at_s: f64,
-    /// Mean length, N.
     pub mean_n: f64,
     /// Integral of the length over time, N s.
     pub integral_n_s: f64,
@@ -20,9 +19,9 @@ pub struct ForceFigures {
     pub principal_sd_n: [f64; 3],
     /// Volume of the ellipsoid with these half axes, N^3.
     pub volume_n3: f64,
-    /// Root of the mean square of the force's rate of change, N/s.
+    /// Root mean square of the force's rate of change, N/s.
     pub rate_rms_n_s: f64,
-    /// Largest rate of change, N/s.
+    /// Maximum rate of change, N/s.
     pub rate_peak_n_s: f64,
 }
 
@@ -40,7 +39,8 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// Takes a sample that holds for `dt_s`; it follows the one before unless `begins`. One that is not finite is left out.
+    /// Adds a sample that holds for `dt_s`; it follows the previous one unless `begins`. A sample that is not finite is
+    /// left out.
     pub(super) fn add(&mut self, t_s: f64, dt_s: f64, force_n: Vector3<f64>, begins: bool) {
         if !force_n.iter().all(|part| part.is_finite()) {
             self.before = None;
@@ -67,7 +67,7 @@ impl Measured {
         self.before = Some(force_n);
     }
 
-    /// The figures; none without a sample.
+    /// Returns the statistics; `None` without a sample.
     pub(super) fn figures(&self) -> Option<ForceFigures> {
         let mut figures = self.figures;
         if figures.samples == 0 {
@@ -76,7 +76,7 @@ impl Measured {
         let count = figures.samples as f64;
         figures.mean_n = self.sum_length_n / count;
         let covariance_n2 = self.products_n2 / count;
-        // Of rounding alone it is not symmetric.
+        // Rounding breaks the symmetry; restore it.
         let covariance_n2 = (covariance_n2 + covariance_n2.transpose()) * 0.5;
         let mut sd_n: [f64; 3] =
             SymmetricEigen::new(covariance_n2).eigenvalues.map(|value| value.max(0.0).sqrt()).into();
@@ -100,7 +100,8 @@ mod tests {
 
     #[test]
     fn a_sine_along_each_axis_has_the_figures_of_the_books() {
-        // Whole periods of 1, 2 and 3 Hz with 2, 1 and 0.5 N: standard deviations are the amplitudes over the root of two.
+        // Whole periods of 1, 2 and 3 Hz with 2, 1 and 0.5 N: standard deviations are the amplitudes over the root of
+        // two.
         let mut measured = Measured::default();
         let mut lengths_n = 0.0;
         let mut peak_n = 0.0_f64;

@@ -1,4 +1,4 @@
-//! The figures of a session, from what is plotted of it: nothing is replayed.
+//! Statistics of a session from its plotted signals; nothing is replayed.
 
 mod arm;
 mod force;
@@ -35,77 +35,67 @@ use crate::{
 };
 use arm::Arm;
 
-/// Most notes on damage that are kept; the others are counted.
+/// Maximum number of notes on damage that are kept; the rest are only counted.
 const NOTES: usize = 20;
 
-/// Why a session has no report.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] ReadError),
-    /// It holds nothing of ours.
     #[error(
-        "{path} holds neither the journal nor the plots of a session of this program; give a file that `nima run --record` or the console wrote"
+        "{path} has neither the journal nor the plots of a session of this program; choose a file written by `nima run --record` or the console"
     )]
-    Foreign {
-        /// The file.
-        path: String,
-    },
+    Foreign { path: String },
 }
 
-/// All figures of a session.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Figures {
-    /// Its file.
     pub file: String,
-    /// What is wrong with the file or not in it, one line each.
+    /// Faults of the file and missing parts, one line each.
     pub notes: Vec<String>,
-    /// What the recorder says of the session: program, build, system, start, clock, rig, scene, seed and others.
+    /// Information from the recorder: program, build, system, start, clock, rig, scene, seed and others.
     pub about: BTreeMap<String, String>,
-    /// Tables of calibrations: `right`, `left`, and by number those that came into force later.
+    /// Tables of calibrations: `right`, `left`, and by number those that became active later.
     pub calibrations: BTreeMap<String, BTreeMap<String, String>>,
-    /// Length, s.
     pub length_s: f64,
-    /// Whether the recording was closed; if not, the program was killed or the file was cut. None without a journal.
+    /// Whether the recording was closed; if not, the program was killed or the file was cut. `None` without a journal.
     pub closed: Option<bool>,
-    /// Whether it is a stretch of a session.
+    /// Whether it is an excerpt of a session.
     pub stretch: bool,
-    /// Holes in the journal.
+    /// Gaps in the journal.
     pub holes: Vec<Missing>,
-    /// Its arms.
     pub arms: Vec<ArmFigures>,
-    /// What happened, in order.
+    /// Events in order.
     pub marks: Vec<Mark>,
-    /// How often each kind of thing happened to the objects of the scene, as [`kind`] names it. `None` if nobody told of objects.
+    /// Number of events of each kind, as named by [`kind`]. `None` if there was no source of events.
     pub happenings: Option<BTreeMap<String, u64>>,
-    /// The endoscope's pictures in the file. `None` if there are none.
+    /// Statistics of the endoscope images. `None` if there are none.
     pub pictures: Option<PicturesFigures>,
-    /// The timing of the loop, where the file has it.
+    /// The timing of the loop, if the file has it.
     pub timing: Option<Times>,
 }
 
-/// A hole in the journal.
+/// A gap in the journal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Missing {
-    /// End of the block with the hole, s from the beginning of the session.
+    /// End of the block with the gap, s since the session's begin.
     pub until_s: f64,
-    /// Entries that are missing.
+    /// Number of missing entries.
     pub lost: u64,
 }
 
-/// What happened once.
+/// A single event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// When, s from the beginning of the session.
+    /// s since the session's begin.
     pub t_s: f64,
-    /// How much it matters, or what it is.
+    /// Severity or kind.
     pub level: MarkLevel,
-    /// What.
+    /// Text.
     pub words: String,
 }
 
-/// How much a mark matters, or what it is.
+/// Severity or kind of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MarkLevel {
@@ -113,16 +103,16 @@ pub enum MarkLevel {
     Error,
     /// A refusal, or an alarm.
     Warning,
-    /// Anything else that was told.
+    /// Any other event.
     Info,
     /// A moment that the operator marked.
     Mark,
-    /// What happened to the objects of the scene.
+    /// An event of the scene's objects.
     Event,
 }
 
 impl MarkLevel {
-    /// The word in files.
+    /// The name used in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Error => "error",
@@ -134,14 +124,14 @@ impl MarkLevel {
     }
 }
 
-/// Timing of the loop.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Times {
-    /// Periods that were missed.
+    /// Number of missed periods.
     pub missed: u64,
-    /// The seconds in which some were missed: their ends, s, and how many.
+    /// The seconds in which periods were missed: their ends, s, and the number of missed periods.
     pub missed_in: Vec<(f64, u64)>,
-    /// Median, 99 %, 99.9 % and largest, us, of waking up late, of the work, and from sample to force; none where nothing was timed.
+    /// Median, 99 %, 99.9 % and maximum, us, of the wake-up delay, of the work, and from sample to force; `None` where
+    /// nothing was timed.
     pub times_us: [Option<[f64; 4]>; TIMES.len()],
 }
 
@@ -149,7 +139,7 @@ impl Figures {
     /// Reads a session.
     ///
     /// # Errors
-    /// [`ReportError`] if it is no session of this program.
+    /// [`ReportError`] if it is not a session of this program.
     pub fn read(path: &Path) -> Result<Self, ReportError> {
         let reader = Reader::open(path)?;
         Self::of(&path.display().to_string(), &reader)
@@ -205,7 +195,7 @@ fn topic(side: Side, what: &str) -> String {
     format!("{}/{what}", side.word())
 }
 
-/// What a message is to an arm, or to all.
+/// The role of a message for an arm, or for the whole session.
 #[derive(Clone, Copy)]
 enum Kind {
     Forces(usize),
@@ -221,7 +211,7 @@ enum Kind {
 struct Channel {
     id: nima_recording::session::ChannelId,
     kind: Kind,
-    /// Of a topic of numbers.
+    /// Only for a topic of numbers.
     columns: Option<Columns>,
 }
 

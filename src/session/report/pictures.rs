@@ -1,21 +1,22 @@
-//! Figures of the endoscope's pictures in a session, from what is told of each: the pictures themselves are not read.
+//! Statistics of the endoscope images in a session, from the properties recorded with each image; the images themselves
+//! are not read.
 
 use serde::Serialize;
 
 use crate::pictures::PictureFigures;
 
-/// The endoscope's pictures in a session.
+/// The endoscope images in a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PicturesFigures {
-    /// How many there are.
+    /// Number of images.
     pub count: u64,
-    /// Their bytes.
+    /// Total size, bytes.
     pub bytes: u64,
-    /// How many are missing because the disk was too slow.
+    /// Number of images that are missing because the disk was too slow.
     pub dropped: u64,
-    /// When the first and the last one arrived, s from the beginning of the session.
+    /// Arrival of the first and the last image, s since the session's begin.
     pub times_s: [f64; 2],
-    /// The longest time between two of them, s.
+    /// Maximum time between two images, s.
     pub longest_gap_s: f64,
 }
 
@@ -32,7 +33,7 @@ impl PicturesFigures {
         self.dropped = dropped;
     }
 
-    /// Pictures a second; `None` with fewer than two.
+    /// Frames per second; `None` with fewer than two.
     pub fn rate_hz(&self) -> Option<f64> {
         let [first_s, last_s] = self.times_s;
         (last_s > first_s).then(|| (self.count - 1) as f64 / (last_s - first_s))

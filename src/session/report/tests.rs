@@ -1,4 +1,4 @@
-//! Figures of a made session against values that are computed by hand.
+//! Statistics of a constructed session against values computed by hand.
 
 use std::{collections::BTreeMap, f64::consts::TAU, path::Path};
 
@@ -13,8 +13,8 @@ use crate::topics::plots;
 
 const START_NS: u64 = 1_700_000_000_000_000_000;
 
-/// Ten seconds of one arm: idle for 2 s, engaged for 6 s with a force of `2 |sin(2 pi t)|` N along x, of which half is rendered while
-/// the ceiling acts for 1.5 s; faulted for 2 s.
+/// Ten seconds of one arm: idle for 2 s, engaged for 6 s with a force of `2 |sin(2 pi t)|` N along x, half of it
+/// rendered while the force limit acts for 1.5 s; faulted for 2 s.
 fn made(path: &Path) {
     let mut writer = Writer::create(path, "test").unwrap();
     let table = BTreeMap::from([("rig".to_owned(), "<script>".to_owned()), ("rate_hz".to_owned(), "1000".to_owned())]);
@@ -76,7 +76,8 @@ fn the_figures_of_a_made_session_are_those_of_the_books() {
     assert_eq!(arm.states.iter().map(|span| span.state).collect::<Vec<_>>(), [1, 3, 6]);
     near(arm.states[1].from_s, 2.0, 1e-6);
     near(arm.states[1].to_s, 8.0, 1e-6);
-    // Six whole periods: the mean of |sin| is 2 / pi, its standard deviation about zero the amplitude over the root of two.
+    // Six whole periods: the mean of |sin| is 2 / pi, its standard deviation about zero the amplitude over the root of
+    // two.
     let [measured, delayed, rendered] = arm.forces.map(Option::unwrap);
     near(measured.peak_n, 2.0, 1e-4);
     near(measured.mean_n, 4.0 / std::f64::consts::PI, 1e-4);

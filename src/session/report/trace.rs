@@ -1,26 +1,25 @@
-//! A quantity over time, small enough for a page: the smallest and the largest value of each bucket.
+//! A quantity over time, small enough for a page: the minimum and the maximum of each bucket.
 
 use serde::Serialize;
 
-/// Buckets of a trace.
 pub const BUCKETS: usize = 600;
 
-/// The smallest and the largest value of each bucket; none where there is no value.
+/// The minimum and the maximum of each bucket; `None` where there is no value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Trace {
     /// Length of a bucket, s; the first begins with the session.
     pub step_s: f64,
-    /// Smallest and largest value.
+    /// Minimum and maximum.
     pub buckets: Vec<Option<[f64; 2]>>,
 }
 
 impl Trace {
-    /// For a session of this length.
+    /// Makes an empty trace for a session of this length.
     pub(super) fn over(length_s: f64) -> Self {
         Self { step_s: length_s.max(1e-3) / BUCKETS as f64, buckets: vec![None; BUCKETS] }
     }
 
-    /// Takes a value; one that is not finite is left out.
+    /// Adds a value; a value that is not finite is left out.
     pub(super) fn add(&mut self, t_s: f64, value: f64) {
         if value.is_finite() {
             let place = ((t_s / self.step_s).max(0.0) as usize).min(BUCKETS - 1);
@@ -29,7 +28,6 @@ impl Trace {
         }
     }
 
-    /// The largest value.
     pub fn largest(&self) -> f64 {
         self.buckets.iter().flatten().fold(0.0, |largest, bucket| bucket[1].max(largest))
     }

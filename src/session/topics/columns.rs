@@ -1,28 +1,27 @@
-//! Reads a topic of named numbers: by the names in its messages, into this program's own order.
+//! Reads a topic of named numbers by the names in its messages, into this program's own order.
 
 use nima_recording::messages::JointStateDecoder;
 
 use super::plots;
 
-/// Sessions of a version before had two columns of this name: of the second one, the gain itself, ...
+/// Sessions of an earlier version had two columns of this name. The second one, the gain itself, ...
 const BEFORE: &str = ".gain";
-/// ... this is the name now.
+/// ... has this name now.
 const NOW: &str = ".gain_value";
 
-/// The columns of one topic.
 #[derive(Debug)]
 pub(crate) struct Columns {
     /// Names in the order of this program.
     known: Vec<String>,
     decoder: JointStateDecoder,
-    /// Names in the messages, and where in them each known one stands.
+    /// Names in the messages, and the index of each known name among them.
     read: Vec<String>,
     places: Option<Vec<usize>>,
     values: Vec<f64>,
 }
 
 impl Columns {
-    /// For the topic of this name; `None` if it is not one of named numbers.
+    /// Returns the columns of the topic with this name; `None` if it is not a topic of named numbers.
     pub(crate) fn of(topic: &str) -> Option<Self> {
         let (_, known, _) = plots().into_iter().find(|(name, ..)| name == topic)?;
         let decoder = JointStateDecoder::default();
@@ -30,7 +29,8 @@ impl Columns {
         Some(Self { known, decoder, read: Vec::new(), places: None, values })
     }
 
-    /// The numbers of a message in the order of this program; `None` if it cannot be read, or if one of them is missing.
+    /// Returns the numbers of a message in the order of this program; `None` if it cannot be read or a number is
+    /// missing.
     pub(crate) fn read(&mut self, message: &[u8]) -> Option<&[f64]> {
         if !self.decoder.decode(message) {
             return None;

@@ -1,4 +1,4 @@
-//! What the identification and the network say of themselves, ten times a second.
+//! Status of the identification and the network, ten times a second.
 
 use nima_core::{
     impedance::{Mode, SLOTS},
@@ -10,9 +10,10 @@ use nima_recording::session::WriteError;
 use super::plot::Plot;
 use crate::outlet::Outlet;
 
-/// Written once per this time, s: an error is a mean over half a second.
+/// Interval, s: an error is a mean over half a second.
 const EVERY_S: f64 = 0.1;
-/// Behind one for each mode, in the order of [`Mode::index`]. What is not computed is no number, nor an error while the force is not known.
+/// Follow one column for each mode, in the order of [`Mode::index`]. A value that is not computed is NaN; so is an
+/// error while the force is unknown.
 const NAMES: [&str; 9] = [
     "baseline.error_n",
     "anchored.degree",
@@ -25,13 +26,11 @@ const NAMES: [&str; 9] = [
     "network.doubt_max",
 ];
 
-/// Names of its numbers.
 pub(super) fn names() -> Vec<String> {
     let errors = Mode::ALL.map(|mode| format!("{}.error_n", mode.name()));
     errors.into_iter().chain(NAMES.map(str::to_owned)).collect()
 }
 
-/// The channel of one arm.
 #[derive(Debug)]
 pub(super) struct Identified {
     plot: Plot,
@@ -39,7 +38,7 @@ pub(super) struct Identified {
     network: Network,
 }
 
-/// The network since the last message.
+/// Statistics of the network since the last message.
 #[derive(Debug, Default)]
 struct Network {
     ticks: u32,
@@ -56,12 +55,12 @@ impl Identified {
         Ok(Self { plot, due_s: f64::NEG_INFINITY, network: Network::default() })
     }
 
-    /// Takes a tick, and writes a message if one is due.
+    /// Adds a tick, and writes a message if one is due.
     pub(super) fn tick(&mut self, out: &mut Outlet, time_ns: u64, tick: &Tick) -> Result<(), WriteError> {
         if let Some(report) = &tick.force.tip_force {
             self.network.add(report);
         }
-        // A clock that went back begins anew.
+        // If the clock has gone back, start again.
         if tick.t_s < self.due_s && tick.t_s > self.due_s - 2.0 * EVERY_S {
             return Ok(());
         }
@@ -96,7 +95,8 @@ impl Network {
         self.doubt_max = self.doubt_max.max(report.doubt);
     }
 
-    /// Mean share in the force, share of the ticks outside its training, largest doubt; no numbers without a network.
+    /// Returns the mean weight in the force, the fraction of ticks outside the training data, and the maximum
+    /// uncertainty; NaN without a network.
     fn values(&self) -> [f64; 3] {
         if self.ticks == 0 {
             return [f64::NAN; 3];

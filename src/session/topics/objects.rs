@@ -1,5 +1,5 @@
-//! The channels of objects: rings and marks as frames, jaws and the state of the task as named numbers, happenings as JSON and as lines of
-//! the log.
+//! The channels of objects: rings and marks as frames, jaws and the state of the task as named numbers, events as JSON
+//! and as lines of the log.
 
 use std::collections::VecDeque;
 
@@ -24,13 +24,11 @@ use crate::{
     outlet::{Channel, Outlet},
 };
 
-/// Topic of the rings.
 pub(crate) const RINGS_TOPIC: &str = "rings";
-/// Topic of what happens.
 pub(crate) const HAPPENINGS_TOPIC: &str = "happenings";
-/// The plot of a side that has its jaws, and its numbers.
+/// The plot with the jaws of a side, and its numbers.
 pub(crate) const JAWS_PLOT: &str = "jaws";
-/// See [`JAWS_PLOT`]; what touches is 1.
+/// See [`JAWS_PLOT`]; a contact is 1.
 pub(crate) const JAWS: [&str; 12] = [
     "opening_rad",
     "opens_n",
@@ -45,9 +43,8 @@ pub(crate) const JAWS: [&str; 12] = [
     "touches.board",
     "touches.instrument",
 ];
-/// Topic of the places that were marked.
 pub(crate) const MARKS_TOPIC: &str = "marks";
-/// Topic of the state of the task, and its numbers; what is true is 1.
+/// Topic of the state of the task, and its numbers; true is 1.
 pub(crate) const TASK_TOPIC: &str = "task";
 /// See [`TASK_TOPIC`].
 pub(crate) const TASK: [&str; 12] = [
@@ -64,19 +61,19 @@ pub(crate) const TASK: [&str; 12] = [
     "left.loop.touches",
     "left.loop.on_wire",
 ];
-/// A state that does not change is written again after this time, s: less than what is shown may be old.
+/// An unchanged state is repeated after this time, s: less than the maximum age of displayed objects.
 const AGAIN_S: f64 = 0.1;
-/// Frames of marks are this and their number, from 0: over a lump, and over none.
+/// Prefix of the frames of marks, followed by their number from 0: on a lump, and elsewhere.
 const MARK: &str = "mark.";
 const FALSE_MARK: &str = "false_mark.";
-/// Most marks that a message is read for.
+/// Maximum number of marks read from a message.
 const MARKS_MAX: usize = 64;
-/// Frames of rings are this and their number, from 0.
+/// Prefix of the frames of rings, followed by their number from 0.
 const RING: &str = "ring.";
-/// Most rings that a message is read for.
+/// Maximum number of rings read from a message.
 const RINGS_MAX: usize = 64;
 
-/// Writes what a source tells, as soon as the loop's tick of its time has passed.
+/// Writes the states of a source as soon as the loop's tick of their time has passed.
 #[derive(Debug)]
 pub(crate) struct OfObjects {
     source: Box<dyn ObjectSource>,
@@ -86,7 +83,7 @@ pub(crate) struct OfObjects {
     jaws: [Option<Plot>; SIDES],
     marks: Option<Channel>,
     task: Option<Plot>,
-    /// The state of the task as it was last written, and when, s.
+    /// The state of the task as last written, and when, s.
     standing: Option<(f64, Standing)>,
     told: Channel,
 }
@@ -107,7 +104,8 @@ impl OfObjects {
         })
     }
 
-    /// Writes the moments up to this time of the loop, s, and returns what happened up to it. `time_ns` gives the time of a message.
+    /// Writes the states up to this time of the loop, s, and returns the events up to it. `time_ns` computes the time
+    /// of a message.
     pub(crate) fn until(
         &mut self,
         out: &mut Outlet,
@@ -152,7 +150,7 @@ impl OfObjects {
         objects.task.as_ref().map_or(Ok(()), |standing| self.stands(out, time_ns, objects.t_s, standing))
     }
 
-    /// Writes the state of the task, if it has changed, and now and then.
+    /// Writes the state of the task when it has changed, and at intervals.
     fn stands(&mut self, out: &mut Outlet, time_ns: u64, t_s: f64, standing: &Standing) -> Result<(), WriteError> {
         let is_due = |(at_s, written): &(f64, Standing)| written != standing || t_s - at_s >= AGAIN_S - 1e-6;
         if !self.standing.as_ref().is_none_or(is_due) {
@@ -164,7 +162,7 @@ impl OfObjects {
         };
         plot.values.extend(standing_numbers(standing));
         plot.write(out, time_ns, false)?;
-        // Marks that were forgotten are told as none.
+        // Removed marks are written as an empty list.
         if self.marks.is_some() || !standing.marks.is_empty() {
             let channel = match self.marks {
                 Some(channel) => channel,
@@ -189,7 +187,7 @@ pub(crate) fn rings_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
     out.channel(RINGS_TOPIC, foxglove::encoding::<FrameTransforms>())
 }
 
-/// The frames of those rings that are there.
+/// Returns the frames of the rings that are in view.
 pub(crate) fn rings(time_ns: u64, rings: &[Option<Isometry3<f64>>]) -> FrameTransforms {
     let timestamp = Some(timestamp(time_ns));
     let frame = |(number, ring): (usize, &Option<Isometry3<f64>>)| {
@@ -205,7 +203,7 @@ pub(crate) fn rings(time_ns: u64, rings: &[Option<Isometry3<f64>>]) -> FrameTran
     FrameTransforms { transforms: rings.iter().enumerate().filter_map(frame).collect() }
 }
 
-/// The frames of these marks.
+/// Returns the frames of these marks.
 pub(crate) fn marks(time_ns: u64, marks: &[Mark]) -> FrameTransforms {
     let timestamp = Some(timestamp(time_ns));
     let frame = |(number, mark): (usize, &Mark)| FrameTransform {
@@ -218,7 +216,7 @@ pub(crate) fn marks(time_ns: u64, marks: &[Mark]) -> FrameTransforms {
     FrameTransforms { transforms: marks.iter().enumerate().map(frame).collect() }
 }
 
-/// The marks of a message; other frames are left out.
+/// Returns the marks of a message; other frames are left out.
 pub(crate) fn marks_of(message: &[u8]) -> Vec<Mark> {
     let frames = FrameTransforms::decode(message).unwrap_or_default().transforms;
     let mark = |FrameTransform { child_frame_id, translation, .. }: FrameTransform| {
@@ -233,7 +231,7 @@ pub(crate) fn marks_of(message: &[u8]) -> Vec<Mark> {
     frames.into_iter().filter_map(mark).take(MARKS_MAX).collect()
 }
 
-/// The rings of a message; those of other frames are left out.
+/// Returns the rings of a message; other frames are left out.
 pub(crate) fn rings_of(message: &[u8]) -> Vec<Option<Isometry3<f64>>> {
     let mut rings = Vec::new();
     for FrameTransform { child_frame_id, translation, rotation, .. } in
@@ -263,7 +261,7 @@ fn numbers(jaws: &Jaws) -> [f64; JAWS.len()] {
     numbers
 }
 
-/// Jaws of their numbers, in the order of [`JAWS`].
+/// Returns the jaws of their numbers, in the order of [`JAWS`].
 pub(crate) fn jaws_of(numbers: &[f64]) -> Option<Jaws> {
     let numbers: &[f64; JAWS.len()] = numbers.try_into().ok()?;
     let touched = [numbers[8], numbers[9], numbers[10], numbers[11]];
@@ -285,7 +283,7 @@ fn standing_numbers(standing: &Standing) -> [f64; TASK.len()] {
     [is(*ended), *share, marked, found, touches, passed, placed, dropped, right[0], right[1], left[0], left[1]]
 }
 
-/// The state of a task of its numbers, in the order of [`TASK`]; its marks stand elsewhere.
+/// Returns the state of a task from its numbers, in the order of [`TASK`]; its marks are in another topic.
 pub(crate) fn standing_of(numbers: &[f64]) -> Option<Standing> {
     let numbers: &[f64; TASK.len()] = numbers.try_into().ok()?;
     let [ended, share, counts @ .., right, right_on, left, left_on] = *numbers;
@@ -338,7 +336,7 @@ mod tests {
         let ring = Isometry3::from_parts(Translation3::new(0.1, -0.02, 0.3), turn);
         let all = [Some(ring), None, Some(Isometry3::identity()), None];
         let read = rings_of(&rings(5, &all).encode_to_vec());
-        assert_eq!(read, all[..3], "the last one that is there ends the list");
+        assert_eq!(read, all[..3], "the last present ring ends the list");
         let jaws = Jaws {
             opening_rad: 0.6,
             opens_n: -1.5,

@@ -1,4 +1,4 @@
-//! The channels of the endoscope's pictures: each as it came, and what is told of it.
+//! The channels of the endoscope images: each image unmodified, and its properties.
 
 use nima_recording::{
     messages::{
@@ -17,14 +17,14 @@ use crate::{
     },
 };
 
-/// The frame of the pictures: its axes are those of the picture.
+/// The frame of the images: its axes are the image axes.
 const FRAME: &str = "endoscope";
 
-/// Writes what a source hands over, as soon as the loop's tick of its time has passed.
+/// Writes the images of a source as soon as the loop's tick of their time has passed.
 #[derive(Debug)]
 pub(crate) struct OfPictures {
     source: Box<dyn PictureSource>,
-    /// The picture whose time has not come yet.
+    /// The image whose time has not come yet.
     waiting: Option<Taken>,
     images: Option<FileChannel>,
     video: Option<FileChannel>,
@@ -38,12 +38,13 @@ impl OfPictures {
         Self { source, waiting: None, images: None, video: None, figures: None, number: 0, last_s: 0.0 }
     }
 
-    /// How many were written, and how many found no room.
+    /// Returns the numbers of written and dropped images.
     pub(crate) fn counts(&self) -> [u64; 2] {
         [self.number, self.source.dropped()]
     }
 
-    /// Writes the pictures that arrived up to this time of the loop, s; `t_s_of` gives the time of one, and `time_ns` that of its message.
+    /// Writes the images that arrived up to this time of the loop, s; `t_s_of` computes the time of an image, and
+    /// `time_ns` the time of its message.
     pub(crate) fn until(
         &mut self,
         out: &mut Outlet,
@@ -52,13 +53,13 @@ impl OfPictures {
         time_ns: impl Fn(f64) -> u64,
     ) -> Result<(), WriteError> {
         while let Some(taken) = self.waiting.take().or_else(|| self.source.picture()) {
-            // Those before the loop's first tick are none of the session's.
+            // Images from before the loop's first tick do not belong to the session.
             let Some(at_s) = t_s_of(&taken).filter(|at_s| *at_s >= 0.0) else { continue };
             if at_s > t_s {
                 self.waiting = Some(taken);
                 return Ok(());
             }
-            // The estimate of the clock may be corrected by a little.
+            // The estimate of the clock may be corrected slightly.
             self.last_s = self.last_s.max(at_s);
             self.write(out, time_ns(self.last_s), taken)?;
         }
@@ -91,13 +92,13 @@ impl OfPictures {
         let open = || out.channel(PICTURE_FIGURES_TOPIC, json_encoding(FIGURES_NAME, FIGURES_SCHEMA));
         let figures = opened(&mut self.figures, open)?;
         self.number += 1;
-        // Numbers and names of fields always have a form in JSON.
+        // Numbers and field names can always be written as JSON.
         let told = serde_json::to_vec(&told).unwrap_or_default();
         out.message(figures, time_ns, &told)
     }
 }
 
-/// A channel is there from its first message on.
+/// A channel is opened by its first message.
 fn opened<C: Copy>(channel: &mut Option<C>, open: impl FnOnce() -> Result<C, WriteError>) -> Result<C, WriteError> {
     match *channel {
         Some(channel) => Ok(channel),

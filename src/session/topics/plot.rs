@@ -25,7 +25,7 @@ impl Plot {
         Ok(Self { channel, encoder: JointStateEncoder::new("world", names), values: Vec::new() })
     }
 
-    /// Writes the values and forgets them; forces are efforts.
+    /// Writes the values and clears them; forces are efforts.
     pub(crate) fn write(&mut self, out: &mut Outlet, time_ns: u64, efforts: bool) -> Result<(), WriteError> {
         let (position, effort) = if efforts { (&[][..], &self.values[..]) } else { (&self.values[..], &[][..]) };
         if let Ok(message) = self.encoder.encode(time_ns, position, &[], effort) {

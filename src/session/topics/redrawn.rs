@@ -1,11 +1,12 @@
-//! Recorded frames and arrows anew, at another time: the numbers of what this program draws, and nothing else.
+//! Rebuilds recorded frames and arrows at another time, only from the numbers that this program draws.
 
 use nima_machine::rig::Side;
 use nima_recording::messages::foxglove::{FrameTransform, FrameTransforms, SceneEntity, SceneUpdate, timestamp};
 
 use super::scene::{DRAWN, WORLD, name_of_arrows, name_of_frame};
 
-/// The frames of tips and leaders. Where the endoscope was tells of the room, and its pictures are left out.
+/// The frames of tips and leaders. The endoscope is left out, because its position reveals the room, and its images are
+/// left out too.
 pub(crate) fn frames(time_ns: u64, of: &FrameTransforms) -> FrameTransforms {
     let names = Side::ALL.into_iter().flat_map(|side| DRAWN.map(|name| name_of_frame(side, name)));
     let anew = |name: String| {

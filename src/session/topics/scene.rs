@@ -1,4 +1,4 @@
-//! The 3-D view of a session: where tip and leader stand, and the forces at the tip as arrows.
+//! The 3-D view of a session: poses of tip and leader, and the forces at the tip as arrows.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_machine::{messages::Tick, rig::Side};
@@ -13,7 +13,7 @@ use nima_recording::{
 use crate::outlet::{Channel, Outlet};
 use prost::Message as _;
 
-/// A picture is written once per this time, s: a screen shows no more.
+/// Interval between two views, s: a screen shows no more.
 const EVERY_S: f64 = 0.02;
 /// Length of an arrow, m/N.
 const LENGTH_M_N: f64 = 0.02;
@@ -22,30 +22,25 @@ const HEAD_M: f64 = 0.003;
 const MEASURED: Color = Color { r: 0.1, g: 0.6, b: 0.9, a: 1.0 };
 const RENDERED: Color = Color { r: 0.95, g: 0.5, b: 0.1, a: 1.0 };
 
-/// Topic of the frames.
 pub(crate) const FRAMES_TOPIC: &str = "frames";
-/// Topic of the arrows.
 pub(crate) const ARROWS_TOPIC: &str = "arrows";
 
-/// The frame of all the others.
+/// Parent of all other frames.
 pub(super) const WORLD: &str = "world";
-/// What is drawn of a side, as a frame.
+/// The frames drawn for a side.
 pub(super) const DRAWN: [&str; 2] = ["tip", "leader"];
 
-/// The endoscope's marker, as a frame; only where its place is known.
+/// The endoscope's marker as a frame; only while its position is known.
 pub(crate) const ENDOSCOPE: &str = "endoscope";
 
-/// Name of a frame of a side.
 pub(super) fn name_of_frame(side: Side, what: &str) -> String {
     format!("{}.{what}", side.word())
 }
 
-/// Name of the arrows of a side.
 pub(super) fn name_of_arrows(side: Side) -> String {
     name_of_frame(side, "forces")
 }
 
-/// The channels of the 3-D view.
 #[derive(Debug)]
 pub(super) struct Scene {
     frames: Channel,
@@ -60,7 +55,7 @@ impl Scene {
         Ok(Self { frames, arrows, due_s: f64::NEG_INFINITY })
     }
 
-    /// Writes a picture of these ticks of one time, if it is due.
+    /// Writes a view of these simultaneous ticks, if it is due.
     pub(super) fn show<'a>(
         &mut self,
         out: &mut Outlet,
@@ -68,7 +63,7 @@ impl Scene {
         t_s: f64,
         ticks: impl Iterator<Item = &'a Tick>,
     ) -> Result<(), WriteError> {
-        // A clock that went back begins anew.
+        // If the clock has gone back, start again.
         if t_s < self.due_s && t_s > self.due_s - 2.0 * EVERY_S {
             return Ok(());
         }
@@ -113,7 +108,7 @@ fn has_endoscope(frames: &FrameTransforms) -> bool {
     frames.transforms.iter().any(|frame| frame.child_frame_id == ENDOSCOPE)
 }
 
-/// The endoscope's marker among recorded frames.
+/// Returns the endoscope's marker among recorded frames.
 pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
     let frames = FrameTransforms::decode(data).ok()?;
     let frame = frames.transforms.iter().find(|frame| frame.child_frame_id == ENDOSCOPE)?;
@@ -124,9 +119,9 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
     world_from_n.to_homogeneous().iter().all(|number| number.is_finite()).then_some(world_from_n)
 }
 
-/// A force (N) at a place (m); none where there is no force, or where it is not known.
+/// A force (N) at a position (m); no arrow if the force is zero or unknown.
 fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<ArrowPrimitive> {
-    // An arrow lies along its own x axis; opposite to it every half turn does.
+    // An arrow points along its own x axis; for the opposite direction any half turn is correct.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
     let length_m = force_n.norm() * LENGTH_M_N;

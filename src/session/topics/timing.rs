@@ -1,4 +1,4 @@
-//! The timing of the loop, once a second: periods that were missed so far, and percentiles of all times so far.
+//! The timing of the loop, once a second: missed periods and percentiles of all times, both since the start.
 
 use nima_core::statistics::{Percentiles, Quantiles};
 use nima_machine::teleop::Timing;
@@ -7,20 +7,17 @@ use nima_recording::session::WriteError;
 use super::plot::Plot;
 use crate::outlet::Outlet;
 
-/// Written once per this time, s.
+/// Interval, s.
 const EVERY_S: f64 = 1.0;
-/// Topic of the timing.
 pub(crate) const TIMING_TOPIC: &str = "timing";
 /// The times, each with `p50_us`, `p99_us`, `p999_us` and `max_us`.
 pub(crate) const TIMES: [&str; 3] = ["wake", "work", "sample_to_force"];
 
-/// Names of its numbers.
 pub(super) fn names() -> Vec<String> {
     let of = |time: &str| ["p50_us", "p99_us", "p999_us", "max_us"].map(|what| format!("{time}.{what}"));
     std::iter::once("missed".to_owned()).chain(TIMES.iter().flat_map(|time| of(time))).collect()
 }
 
-/// The channel.
 #[derive(Debug)]
 pub(super) struct Times {
     plot: Plot,
@@ -37,7 +34,7 @@ impl Times {
         Ok(Self { plot, due_s: EVERY_S, missed: 0, durations: Default::default() })
     }
 
-    /// Takes a tick, and writes a message if one is due.
+    /// Adds a tick, and writes a message if one is due.
     pub(super) fn tick(&mut self, out: &mut Outlet, time_ns: u64, timing: &Timing) -> Result<(), WriteError> {
         let Timing { now_s, wake_s, work_s, sample_to_force_s, missed_now } = *timing;
         self.missed += missed_now;
@@ -46,7 +43,7 @@ impl Times {
                 percentiles.record(time_s);
             }
         }
-        // A clock that went back begins anew.
+        // If the clock has gone back, start again.
         if now_s < self.due_s && now_s > self.due_s - 2.0 * EVERY_S {
             return Ok(());
         }
@@ -59,7 +56,7 @@ impl Times {
     }
 }
 
-/// No numbers where nothing was timed.
+/// NaN where nothing was timed.
 fn values(percentiles: &Percentiles) -> [f64; 4] {
     if percentiles.count() == 0 {
         return [f64::NAN; 4];

@@ -1,5 +1,5 @@
-//! How a person handles the tool for the frame calibrations: poses that are held, pivoting in the trocar, touches of the table, and
-//! moves in the picture. Positions in m, `world`.
+//! How a person handles the tool for the frame calibrations: holding poses, pivoting in the trocar, touching the table,
+//! and moving in the image. Positions in m, `world`.
 
 use std::f64::consts::TAU;
 
@@ -10,45 +10,45 @@ use nima_machine::rig::Prompt;
 use super::{Person, REACH_S, TURN_RAD_S};
 use crate::{hand::Move, scene::Flaw, trocar::shaft};
 
-/// A pose is held for so long, s: longer than a session asks for.
+/// Duration of holding a pose, s: longer than a session requires.
 const HELD_S: f64 = 1.0;
-/// Shortest way to the next pose, s, and speed of the tip on it, m/s.
+/// Minimum duration of the movement to the next pose, s, and speed of the tip, m/s.
 const WAY_MIN_S: f64 = 0.6;
 const WAY_M_S: f64 = 0.08;
-/// Tilts to all sides, and turns about the shaft to both, rad.
+/// Tilts to all sides, and rotations about the shaft in both directions, rad.
 const TILT_RAD: f64 = 25.0 * TAU / 360.0;
 const SPIN_RAD: f64 = 50.0 * TAU / 360.0;
-/// In the trocar: tilts from the straight way to the middle of the tissue, rad, and depths, m.
+/// In the trocar: tilts from the straight line to the middle of the tissue, rad, and depths, m.
 const PIVOT_RAD: f64 = 20.0 * TAU / 360.0;
 const DEPTH_M: [f64; 2] = [0.07, 0.17];
 /// The tip stays this far above the tissue, m.
 const CLEAR_M: f64 = 0.004;
-/// Room in which poses for the hand-eye calibration are taken: half widths, and heights, m.
+/// Space of the poses for the hand-eye calibration: half widths, and heights, m.
 const ROOM_M: [f64; 2] = [0.04, 0.04];
 const ROOM_Z_M: [f64; 2] = [0.04, 0.10];
-/// Points of the table that are touched, m: the origin, along x, on the side of y, and further ones.
+/// Touched points of the table, m: the origin, along x, on the side of y, and further ones.
 const TABLE_M: [[f64; 2]; 6] = [[0.0, 0.0], [0.08, 0.0], [0.0, 0.06], [0.07, 0.06], [-0.05, -0.02], [0.05, -0.05]];
-/// The tip is lifted by so much between two points, m.
+/// The tip is lifted by this much between two points, m.
 const LIFT_M: f64 = 0.015;
-/// Errors of a person, per axis: the tip in its dimple, a touch, and the end of a move, m.
+/// A person's errors, per axis: the tip in its dimple, a touch, and the end of a move, m.
 const DIMPLE_MISS_M: f64 = 0.05e-3;
 const TOUCH_MISS_M: f64 = 0.15e-3;
 const WAY_MISS_M: f64 = 1.0e-3;
-/// Length of a move in the picture, m.
+/// Length of a move in the image, m.
 const WAY_M: f64 = 0.03;
 
-/// Where the tip is and how the tool is turned.
+/// Position of the tip and orientation of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::person) struct Held {
     pub(in crate::person) tip_m: Vector3<f64>,
     pub(in crate::person) world_from_s1: UnitQuaternion<f64>,
 }
 
-/// The present way from one pose to the next.
+/// The current movement from one pose to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Handling {
     noise: Noise,
-    /// How the tool is turned when it is held comfortably.
+    /// Orientation of the tool in a comfortable grip.
     reference: UnitQuaternion<f64>,
     world_from_view: UnitQuaternion<f64>,
     from: Held,
@@ -56,14 +56,13 @@ pub(super) struct Handling {
     way_s: f64,
     in_way_s: f64,
     lift_m: f64,
-    /// A pose was chosen that nobody has looked at yet.
+    /// Whether a pose was chosen that has not been read by [`Person::chosen`] yet.
     is_new: bool,
-    /// Where the handle is led, from where it was when the person came, m.
+    /// Position of the handle, relative to its position when the person arrived, m.
     handle: Move,
 }
 
 impl Handling {
-    /// At rest here.
     pub(super) fn new(noise: Noise, tip_m: Vector3<f64>, world_from_s1: UnitQuaternion<f64>) -> Self {
         let here = Held { tip_m, world_from_s1 };
         let at_rest = Move { from_m: Vector3::zeros(), to_m: Vector3::zeros(), seconds: 0.0 };
@@ -89,7 +88,7 @@ impl Handling {
         from + (to - from) * self.noise.uniform()
     }
 
-    /// A random axis across the vertical, times a random angle up to `most_rad`.
+    /// A random horizontal axis times a random angle up to `most_rad`.
     fn tilt(&mut self, most_rad: f64) -> UnitQuaternion<f64> {
         let angle = most_rad * self.noise.uniform().sqrt();
         let side = TAU * self.noise.uniform();
@@ -111,7 +110,6 @@ impl Handling {
         self.is_new = true;
     }
 
-    /// Pose now.
     fn now(&self) -> Held {
         let s = (self.in_way_s / self.way_s.max(1e-9)).min(1.0);
         let share = s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
@@ -137,7 +135,7 @@ pub(super) const fn is_handling(prompt: &Prompt) -> bool {
 }
 
 impl Person {
-    /// Holds the tool like this where he finds it comfortable, in front of a picture that is turned like this.
+    /// Sets the comfortable orientation of the tool and the orientation of the image.
     #[must_use]
     pub fn turned(mut self, world_from_s1: UnitQuaternion<f64>, world_from_view: UnitQuaternion<f64>) -> Self {
         self.world_from_s1 = world_from_s1;
@@ -147,23 +145,23 @@ impl Person {
         self
     }
 
-    /// The pose that was chosen since the last call.
+    /// Returns the pose chosen since the last call.
     pub fn chosen(&mut self) -> Option<(Vector3<f64>, UnitQuaternion<f64>)> {
         let Held { tip_m, world_from_s1 } = self.handling.to;
         std::mem::take(&mut self.handling.is_new).then_some((tip_m, world_from_s1))
     }
 
-    /// Chooses another pose: the arm does not take the one that was chosen.
+    /// Chooses another pose, because the arm cannot reach the chosen one.
     pub fn choose_again(&mut self) {
         self.choose();
     }
 
-    /// Where the handle is led, from where it was when the person came, m (`world`).
+    /// Returns the position of the handle, relative to its position when the person arrived, m (`world`).
     pub fn handle_m(&self) -> Vector3<f64> {
         self.handling.handle.at(self.handling.in_way_s).0
     }
 
-    /// Begins with an instruction from where the tool is now.
+    /// Begins with an instruction from the current pose of the tool.
     pub(super) fn begin_handling(&mut self) {
         self.turn = (self.world_from_s1, self.world_from_s1);
         let handle_m = self.handle_m();
@@ -183,12 +181,12 @@ impl Person {
                 let to_m = handle_m + self.way_m(way);
                 self.handling.handle = Move { from_m: handle_m, to_m, seconds: self.handling.way_s };
             }
-            // Begins with what is asked for at once.
+            // Starts with the requested pose at once.
             _ => self.handling.in_way_s = HELD_S,
         }
     }
 
-    /// Goes on by `dt_s`.
+    /// Continues by `dt_s`.
     pub(super) fn handle(&mut self, dt_s: f64) {
         self.handling.in_way_s += dt_s;
         if self.prompt == Prompt::PivotInTrocar {
@@ -206,7 +204,7 @@ impl Person {
         }
     }
 
-    /// The next pose, where poses follow each other under one instruction.
+    /// Chooses the next pose of an instruction with several poses.
     fn choose(&mut self) {
         let stays = self.flaw == Some(Flaw::KeepsOneOrientation);
         self.handling.from = self.handling.now();
@@ -237,7 +235,7 @@ impl Person {
         self.handling.world_from_view * way.in_view() * WAY_M + self.handling.white(WAY_MISS_M)
     }
 
-    /// From place to place beyond the trocar, without a pause; the shaft always points through it.
+    /// Moves continuously between positions beyond the trocar; the shaft always points through it.
     fn pivot_in_trocar(&mut self, dt_s: f64) {
         let Some(wall_m) = self.wall_m else { return };
         self.in_reach_s += dt_s;
@@ -250,7 +248,7 @@ impl Person {
         self.reach_on(0.0);
     }
 
-    /// A place of the tip beyond the trocar and above the tissue.
+    /// A position of the tip beyond the trocar and above the tissue.
     fn beyond(&mut self, wall_m: &Vector3<f64>) -> Vector3<f64> {
         let middle = shaft(wall_m, &Vector3::new(0.0, 0.0, self.surface_z_m)).0;
         let most_rad = if self.flaw == Some(Flaw::WorksInOnePlace) { 0.1 * PIVOT_RAD } else { PIVOT_RAD };

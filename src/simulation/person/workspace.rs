@@ -1,13 +1,13 @@
-//! Where a person works with the instrument who records for the tip force: where the task will be done.
+//! Where a person works with the instrument when recording for the tip force: in the space of the later task.
 
 use crate::scene::Scene;
 
-/// The tip goes this far beyond the task's targets to every side, m: more than a drag, an overshoot, or the way from the pose in which
-/// the arm was left.
+/// The tip moves this far beyond the task's targets on every side, m: more than a drag, an overshoot, or the distance
+/// from the pose in which the arm was left.
 const MARGIN_M: f64 = 0.015;
-/// He presses this much deeper than the task intends: a hand does not stop where it intends to.
+/// The person presses deeper than the task intends by this factor: a hand overshoots.
 const DEEPER: f64 = 1.2;
-/// Least depth of a press, m.
+/// Minimum depth of a press, m.
 const PRESS_MIN_M: f64 = 0.002;
 
 /// Working space of the tip.
@@ -20,7 +20,7 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    /// That of the scene's task: the box around its targets, no further than the tissue.
+    /// The space of the scene's task: the box around its targets, limited to the tissue.
     pub(super) fn of(scene: &Scene) -> Self {
         let across_m = [0, 1].map(|axis| {
             let at = scene.targets_m.iter().map(|target_m| target_m[axis]);

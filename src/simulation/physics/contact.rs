@@ -1,13 +1,14 @@
-//! The law of one place where two things touch: a spring and a damper that never pull, and Coulomb friction through a spring that sticks until
-//! the limit (Cundall and Strack, Géotechnique 29, 1979).
+//! The law of one contact point: a spring and a damper that never pull, and Coulomb friction through a spring that
+//! sticks until the limit (Cundall and Strack, Géotechnique 29, 1979).
 
 use nalgebra::Vector3;
 
-/// Largest force of one place, N: an arm that was driven into a peg or through it gets no more.
+/// Maximum force of one contact, N: an arm that was driven into or through a peg gets no more.
 const FORCE_MOST_N: f64 = 30.0;
-/// The spring of friction, in terms of that of the normal: 2/3 for rubber (Mindlin, J. Appl. Mech. 16, 1949).
+/// Stiffness of the friction spring relative to the normal one: 2/3 for rubber (Mindlin, J. Appl. Mech. 16, 1949).
 const TANGENTIAL: f64 = 2.0 / 3.0;
-/// Damping of the torsion, s times its stiffness: a ring between two fingers turns at some 40 Hz, this ends it in a few turns.
+/// Damping of the torsion, s times its stiffness: a ring between two fingers rotates at about 40 Hz, and this damps it
+/// within a few periods.
 const TORSION_S: f64 = 3e-3;
 
 /// Stiffness, damping and friction of a kind of contact.
@@ -20,26 +21,26 @@ pub(crate) struct Law {
     pub patch_radius_m: f64,
 }
 
-/// What a place remembers as long as it touches.
+/// State of a contact while it lasts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Memory {
-    /// How far friction's spring is stretched, m.
+    /// Elongation of the friction spring, m.
     stretched_m: Vector3<f64>,
     twisted_rad: f64,
 }
 
-/// How two things touch. The normal points from the other thing to this one.
+/// Geometry of a contact. The normal points from the other body to this one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
     pub depth_m: f64,
     pub normal: Vector3<f64>,
-    /// Velocity of this thing relative to the other, m/s.
+    /// Velocity of this body relative to the other, m/s.
     pub velocity_m_s: Vector3<f64>,
-    /// Turning relative to the other about the normal, rad/s.
+    /// Rotation relative to the other body about the normal, rad/s.
     pub spin_rad_s: f64,
 }
 
-/// What the other thing does to this one.
+/// Force and torque of the other body on this one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Push {
     pub force_n: Vector3<f64>,
@@ -50,7 +51,7 @@ pub(crate) struct Push {
 }
 
 impl Law {
-    /// The forces at the end of a step of `step_s`.
+    /// Returns the forces at the end of a step of `step_s`.
     pub(crate) fn push(&self, memory: &mut Memory, touch: &Touch, step_s: f64) -> Push {
         let approach_m_s = touch.normal.dot(&touch.velocity_m_s);
         let normal_n =
@@ -91,17 +92,18 @@ impl Law {
     }
 }
 
-/// Up to two places where a ring touches one capsule, told apart by where they are on the ring.
+/// Up to two contacts of a ring with one capsule, distinguished by their positions on the ring.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pair {
     places: [Option<(Vector3<f64>, Memory)>; 2],
 }
 
-/// Farther than this on the ring it is another place, m.
+/// A contact farther than this on the ring is a different one, m.
 const MOVED_M: f64 = 3e-3;
 
 impl Pair {
-    /// The memories of these places (in the frame of the ring), in their order; what is not among them is forgotten.
+    /// Returns the states of the contacts at these positions (in the frame of the ring), in order; all others are
+    /// discarded.
     pub(crate) fn of(&mut self, at_m: [Option<Vector3<f64>>; 2]) -> [Memory; 2] {
         let mut left = self.places;
         at_m.map(|at_m| {
@@ -128,7 +130,7 @@ impl Pair {
 }
 
 impl Push {
-    /// What this thing does to the other.
+    /// Returns the reaction on the other body.
     pub(crate) fn reverse(&self) -> Self {
         Self { force_n: -self.force_n, torque_nm: -self.torque_nm, normal_n: self.normal_n }
     }

@@ -2,24 +2,23 @@
 
 use nalgebra::Vector3;
 
-/// Below this a length counts as none, m.
+/// A length below this counts as zero, m.
 const TINY_M: f64 = 1e-9;
-/// Places on a circle where the search for the closest ones begins.
+/// Number of start points on a circle for the search of closest points.
 pub(crate) const PLACES: usize = 16;
-/// Steps that refine a closest place; the distance is then right to 0.03 mm (tested).
+/// Steps that refine a closest point; the distance is then accurate to 0.03 mm (tested).
 const REFINEMENTS: usize = 3;
-/// They go on by at most 19 times the last step.
+/// Upper limit of the extrapolation factor: steps extrapolate by at most 19 times the last step.
 const FACTOR_MOST: f64 = 0.95;
-/// Two closest places that are nearer to each other than this are one, m.
+/// Two closest points that are nearer to each other than this are the same, m.
 const SAME_M: f64 = 5e-4;
 
-/// The unit vector, or `otherwise` if there is no direction; and the length.
+/// Returns the unit vector, or `otherwise` if there is no direction, and the length.
 pub(crate) fn unit_or(vector: &Vector3<f64>, otherwise: &Vector3<f64>) -> (Vector3<f64>, f64) {
     let length = vector.norm();
     if length > TINY_M { (vector / length, length) } else { (*otherwise, length) }
 }
 
-/// The axis of a capsule.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Segment {
     pub from_m: Vector3<f64>,
@@ -27,7 +26,7 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// The share of the way from one end to the other where it is closest to a point.
+    /// Returns the fraction of its length at which it is closest to a point.
     fn share(&self, point_m: &Vector3<f64>) -> f64 {
         let along = self.to_m - self.from_m;
         let square = along.norm_squared();
@@ -38,7 +37,7 @@ impl Segment {
         self.from_m + (self.to_m - self.from_m) * share
     }
 
-    /// Its point that is closest to this one.
+    /// Returns its closest point to this one.
     pub(crate) fn closest(&self, point_m: &Vector3<f64>) -> Vector3<f64> {
         self.at(self.share(point_m))
     }
@@ -71,15 +70,15 @@ pub(crate) struct Circle {
 }
 
 impl Circle {
-    /// Its point that is closest to this one.
+    /// Returns its closest point to this one.
     pub(crate) fn closest(&self, point_m: &Vector3<f64>) -> Vector3<f64> {
         let offset = point_m - self.centre_m;
         let (outwards, _) = unit_or(&(offset - self.axis * self.axis.dot(&offset)), &self.across[0]);
         self.centre_m + outwards * self.radius_m
     }
 
-    /// Nearer to where it is closest to a segment: twice to the closest point there and back, and on by what such steps would still go if
-    /// each were shorter than the one before by the same factor (Aitken).
+    /// Refines the closest point to a segment: projects twice to the segment and back, then extrapolates the steps as a
+    /// geometric series (Aitken).
     fn nearer(&self, ours_m: &Vector3<f64>, segment: &Segment) -> Vector3<f64> {
         let once_m = self.closest(&segment.closest(ours_m));
         let twice_m = self.closest(&segment.closest(&once_m));
@@ -89,15 +88,16 @@ impl Circle {
         self.closest(&(twice_m + second * (factor / (1.0 - factor))))
     }
 
-    /// Its places in even steps.
+    /// Returns evenly spaced points.
     pub(crate) fn places_m(&self, directions: &[[f64; 2]; PLACES]) -> [Vector3<f64>; PLACES] {
         directions.map(|[cos, sin]| {
             self.centre_m + self.across[0] * (cos * self.radius_m) + self.across[1] * (sin * self.radius_m)
         })
     }
 
-    /// Where it is closest to a segment and nearer than `reach_m`: pairs of points on the circle and on the segment. A straight line has at most
-    /// two such places: the distance's square along the circle is a trigonometric polynomial of second degree.
+    /// Returns where it is closest to a segment and nearer than `reach_m`: pairs of points on the circle and on the
+    /// segment. A straight line has at most two such places: the distance's square along the circle is a trigonometric
+    /// polynomial of second degree.
     pub(crate) fn nearest(
         &self,
         places_m: &[Vector3<f64>; PLACES],
@@ -138,7 +138,7 @@ impl Circle {
     }
 }
 
-/// Near the lowest point of the parabola through a place and its two neighbours.
+/// Returns a start near the lowest point of the parabola through a point and its two neighbours.
 fn between(places_m: &[Vector3<f64>; PLACES], squares: &[f64; PLACES], i: usize) -> Vector3<f64> {
     let before = (i + PLACES - 1) % PLACES;
     let after = (i + 1) % PLACES;
@@ -148,7 +148,7 @@ fn between(places_m: &[Vector3<f64>; PLACES], squares: &[f64; PLACES], i: usize)
     places_m[i] + (places_m[towards] - places_m[i]) * share.abs()
 }
 
-/// Cosines and sines of the places on a circle.
+/// Cosines and sines of the points on a circle.
 pub(crate) fn directions() -> [[f64; 2]; PLACES] {
     std::array::from_fn(|i| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * i as f64 / PLACES as f64);
@@ -170,7 +170,7 @@ mod tests {
         [-0.02..0.02f64, -0.02..0.02f64, -0.02..0.02f64].prop_map(Vector3::from)
     }
 
-    /// The same places in every run: in one of 50 000 the search stops up to 0.2 mm too far away.
+    /// The same cases in every run: in one of 50 000 the search stops up to 0.2 mm too far away.
     #[test]
     fn the_nearest_place_is_that_of_a_fine_search() {
         let mut runner = proptest::test_runner::TestRunner::deterministic();
@@ -186,7 +186,7 @@ mod tests {
                 .fold(f64::INFINITY, f64::min);
             let nearest = circle.nearest(&circle.places_m(&directions()), &segment, 0.003);
             let found_m = nearest.iter().flatten().map(|[a, b]| (a - b).norm()).fold(f64::INFINITY, f64::min);
-            // Nearer than 1 mm no capsule gets to the middle of a tube: fingers give way before.
+            // No capsule gets nearer than 1 mm to the middle of a tube, because the fingers yield before.
             if (0.001..0.00297).contains(&fine_m) {
                 prop_assert!((found_m - fine_m).abs() < 3e-5, "{} m instead of {} m", found_m, fine_m);
             } else if fine_m > 0.00301 {

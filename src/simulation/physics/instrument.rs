@@ -1,27 +1,27 @@
-//! The instruments: what they are told, and what they feel.
+//! The instruments: their commands and their loads.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Widest that jaws open, rad; graspers open to about 70 degrees.
+/// Maximum opening of the jaws, rad; graspers open to about 70 degrees.
 pub const OPENING_MOST_RAD: f64 = 1.4;
 /// Farther from the origin an instrument counts as absent, m.
 const FARTHEST_M: f64 = 10.0;
 
-/// Where an instrument is. Workspace frame, z up.
+/// Pose of an instrument. Workspace frame, z up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instrument {
     /// End of the closed fingers, m.
     pub tip_m: Vector3<f64>,
     /// Orientation of the jaws: z along the closed fingers towards their end, y the axis about which they open.
     pub world_from_jaws: UnitQuaternion<f64>,
-    /// Where the shaft enters, m. It is straight from there to the hinge of the fingers.
+    /// Entry point of the shaft, m. The shaft is straight from there to the hinge of the fingers.
     pub trocar_m: Vector3<f64>,
     /// Commanded angle between the fingers, rad; 0 is closed.
     pub opening_rad: f64,
 }
 
 impl Instrument {
-    /// Whether all of it are numbers, and it is somewhere near.
+    /// Whether all values are finite and the instrument is within range.
     pub(crate) fn is_sane(&self) -> bool {
         let near = |at_m: &Vector3<f64>| at_m.iter().all(|x| x.abs() <= FARTHEST_M);
         let turned = (self.world_from_jaws.norm_squared() - 1.0).abs() < 1e-3;
@@ -29,7 +29,7 @@ impl Instrument {
     }
 }
 
-/// What acts on an instrument, as a mean over the last step. Workspace frame.
+/// Mean load on an instrument over the last step. Workspace frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Loads {
     /// Force of all contacts, N.
@@ -38,11 +38,10 @@ pub struct Loads {
     pub torque_nm: Vector3<f64>,
     /// Force that opens the jaws, N at the end of a finger; negative if it closes them.
     pub opening_n: f64,
-    /// What it touches.
     pub touching: Touching,
 }
 
-/// What an instrument touches.
+/// Kinds of objects that an instrument touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a thing that can be touched, in any combination")]
 pub struct Touching {

@@ -17,12 +17,13 @@ use crate::physics::{
 };
 pub use state::{Doing, RingState};
 
-/// Longest sub-step, s.
+/// Maximum sub-step, s.
 const SUBSTEP_MOST_S: f64 = 1e-3;
-/// Longest period of a step, s.
+/// Maximum period of a step, s.
 const PERIOD_MOST_S: f64 = 0.1;
-/// A sub-step is at most this, in terms of the fastest vibration of a ring between four fingers (12 contact stiffnesses on its mass, as the rim is
-/// three times as light as the whole). Semi-implicit Euler is stable below 2, less with damping.
+/// Maximum sub-step, relative to the fastest vibration of a ring between four fingers (12 contact stiffnesses on its
+/// mass, as the effective mass at the rim is a third of the whole). Semi-implicit Euler is stable below 2, less with
+/// damping.
 const SUBSTEP_OF_VIBRATION: f64 = 0.75;
 
 /// Rings, pegs and board, and two instruments among them.
@@ -70,12 +71,12 @@ struct Laws {
     instrument: Law,
     jaw_ring: Law,
     ring_peg: Law,
-    /// Of each of the places of a ring.
+    /// For each contact of a ring.
     ring_board: Law,
     ring_ring: Law,
 }
 
-/// What places that touch remember. Rings first, then what they touch.
+/// States of contacts. Indexed by the ring, then by the body that it touches.
 #[derive(Clone, Debug)]
 struct Memories {
     ring_board: Vec<[Memory; PLACES]>,
@@ -87,26 +88,26 @@ struct Memories {
     tool_tool: [[Memory; PARTS]; PARTS],
 }
 
-/// Places of one ring on another.
+/// Contacts of one ring on another.
 #[derive(Clone, Copy, Debug, Default)]
 struct RingPair {
     places: [Memory; PLACES],
     touched: bool,
 }
 
-/// What was noticed of a ring during a step.
+/// Observations of a ring during a step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Note {
-    /// Board, peg or ring touch it.
+    /// Whether board, peg or ring touches it.
     supported: bool,
     touched_by: [bool; SIDES],
-    /// Direction and size of what the fingers press, N; of the last sub-step.
+    /// Direction and size of the fingers' pressure in the last sub-step, N.
     fingers_n: [[Vector3<f64>; 2]; SIDES],
     outside_s: f64,
 }
 
 impl Objects {
-    /// The objects of a setting with a step each `period_s`. The setting must have been validated.
+    /// The objects of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &Setting, period_s: f64) -> Self {
         let period_s = if period_s > 0.0 { period_s.min(PERIOD_MOST_S) } else { SUBSTEP_MOST_S };
         let Board { z_m, .. } = setting.board;
@@ -157,8 +158,8 @@ impl Objects {
         objects
     }
 
-    /// Moves on by one period, at whose end the instruments are here. An instrument with anything that is not a number counts as
-    /// absent. Returns what acts on each.
+    /// Advances by one period, at whose end the instruments have these poses. An instrument with a value that is not
+    /// finite counts as absent. Returns the loads on each.
     pub fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
         for (tool, at) in self.tools.iter_mut().zip(instruments) {
             match (tool.as_mut(), at.filter(Instrument::is_sane)) {
@@ -196,17 +197,16 @@ impl Objects {
         self.tools.each_ref().map(|tool| tool.as_ref().map_or_else(Loads::default, |tool| tool.loads(substeps)))
     }
 
-    /// The rings.
     pub fn rings(&self) -> &[RingState] {
         &self.states
     }
 
-    /// Actual angle between the fingers of each instrument, rad; `None` if there is none.
+    /// Returns the actual angle between the fingers of each instrument, rad; `None` if there is none.
     pub fn openings_rad(&self) -> [Option<f64>; SIDES] {
         self.tools.each_ref().map(|tool| tool.as_ref().map(|tool| tool.opening_rad))
     }
 
-    /// Time from step to step, s.
+    /// Time between steps, s.
     pub const fn period_s(&self) -> f64 {
         self.period_s
     }
@@ -218,19 +218,18 @@ impl Objects {
         }
     }
 
-    /// For tests.
     #[cfg(test)]
     pub(crate) fn ring_mut(&mut self, ring: usize) -> &mut Ring {
         &mut self.rings[ring]
     }
 
-    /// What the fingers of an instrument press on a ring, N, for tests.
+    /// Force of an instrument's fingers on a ring, N, for tests.
     #[cfg(test)]
     pub(crate) fn grip_n(&self, ring: usize, side: usize) -> f64 {
         0.5 * self.notes[ring].fingers_n[side].iter().map(Vector3::norm).sum::<f64>()
     }
 
-    /// Energy of all motion and height, J, for tests.
+    /// Kinetic and potential energy, J, for tests.
     #[cfg(test)]
     pub(crate) fn energy_j(&self) -> f64 {
         self.rings.iter().map(Ring::energy_j).sum()
@@ -248,7 +247,7 @@ fn substeps(setting: &Setting, period_s: f64) -> u32 {
         let fastest_rad_s = (12.0 * setting.contact.ring_stiffness_n_m / setting.ring.mass_kg).sqrt();
         (SUBSTEP_OF_VIBRATION / fastest_rad_s).min(SUBSTEP_MOST_S)
     };
-    // Rounding must not make two of what fits into one.
+    // Rounding must not split a step that fits.
     (period_s / longest_s - 1e-9).ceil().max(1.0) as u32
 }
 
@@ -256,7 +255,8 @@ fn laws(setting: &Setting) -> Laws {
     let contact = &setting.contact;
     let friction = &setting.friction;
     let stiffness_n_m = contact.ring_stiffness_n_m;
-    // Half of critical for a ring between two fingers, whose rim is three times as light as the whole.
+    // Half of the critical damping of a ring between two fingers; the effective mass at its rim is a third of the
+    // whole.
     let damping_s = (setting.ring.mass_kg / (6.0 * stiffness_n_m)).sqrt();
     let ring = |share: f64, friction: f64, patch_radius_m: f64| Law {
         stiffness_n_m: stiffness_n_m * share,
@@ -264,7 +264,7 @@ fn laws(setting: &Setting) -> Laws {
         friction,
         patch_radius_m,
     };
-    // Two or three places touch at an edge, all of them where a ring lies flat.
+    // A ring touches at two or three points on an edge, and at all of them when it lies flat.
     let of_many = 0.25;
     Laws {
         instrument: Law {

@@ -1,22 +1,22 @@
-//! When peg transfer is done: every ring was on a peg of the other side, and is home again.
+//! Detects the end of peg transfer: every ring was on a peg of the other side and has returned.
 
 use nima_core::{Side, task::Event};
 
 use crate::physics::setting::{Setting, Start};
 
-/// How far a ring has come.
+/// Progress of a ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// It has to go to the other side.
+    /// On the way to the other side.
     Outward,
-    /// It was there, and has to come home.
+    /// It was there and has to return.
     Homeward,
     Home,
-    /// Out of the picture: it cannot come any more.
+    /// Out of view and not recoverable.
     Lost,
 }
 
-/// The state of peg transfer, from its events. Rings that were lost out of view are not waited for.
+/// The state of peg transfer, computed from its events. Rings that were lost out of view are ignored.
 ///
 /// ```
 /// use nima_core::Side;
@@ -41,7 +41,7 @@ fn side_of(x_m: f64) -> Side {
 }
 
 impl PegTransfer {
-    /// At the beginning: every ring is at home.
+    /// The beginning: every ring is on its own side.
     pub fn new(setting: &Setting) -> Self {
         let pegs: Vec<Side> = setting.pegs.at_m.iter().map(|[x_m, _]| side_of(*x_m)).collect();
         let home = |start: &Start| match start {
@@ -52,7 +52,7 @@ impl PegTransfer {
         Self { pegs, rings }
     }
 
-    /// Takes what happened.
+    /// Processes an event.
     pub fn take(&mut self, event: Event) {
         match event {
             Event::RingPlaced { ring, peg, .. } => {
@@ -77,7 +77,7 @@ impl PegTransfer {
         }
     }
 
-    /// The side to whose pegs a ring has to go; `None` if it is home again, lost or no ring.
+    /// Returns the side to whose pegs a ring has to go; `None` if it has returned, is lost, or does not exist.
     pub fn goal(&self, ring: usize) -> Option<Side> {
         match self.rings.get(ring)? {
             (home, Stage::Outward) => Some(home.other()),
@@ -86,7 +86,7 @@ impl PegTransfer {
         }
     }
 
-    /// Whether no ring has to go anywhere, and there is at least one.
+    /// Whether there is at least one ring and no ring has to go anywhere.
     pub fn is_done(&self) -> bool {
         !self.rings.is_empty() && (0..self.rings.len()).all(|ring| self.goal(ring).is_none())
     }

@@ -8,23 +8,23 @@ use crate::physics::{
     setting::Shape,
 };
 
-/// Of free fall, m/s^2 (standard).
+/// Standard acceleration of free fall, m/s^2.
 pub(crate) const GRAVITY_M_S2: f64 = 9.806_65;
-/// Largest speed, m/s, and turning, rad/s: an arm that hits a ring at any speed gives it no more.
+/// Maximum speed, m/s, and rotation, rad/s, whatever the speed of an arm that hits a ring.
 const SPEED_MOST_M_S: f64 = 10.0;
 const TURNING_MOST_RAD_S: f64 = 1000.0;
-/// A ring that is slower than this (its middle, and its rim by turning), m/s, for this long, s, is at rest.
+/// A ring that is slower than this (at its middle, and at its rim by rotation), m/s, for this long, s, is at rest.
 const REST_M_S: f64 = 2e-3;
 const REST_AFTER_S: f64 = 0.2;
 
-/// A ring: where it is and how it moves, and the forces of the current step.
+/// Pose and motion of a ring, and the forces of the current step.
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "a rotation is named by both of its frames")]
 pub(crate) struct Ring {
     pub centre_m: Vector3<f64>,
     pub world_from_ring: UnitQuaternion<f64>,
     pub velocity_m_s: Vector3<f64>,
-    /// Angular momentum, N m s: unlike the angular velocity it stays the same while nothing acts.
+    /// Angular momentum, N m s: unlike the angular velocity it is constant while no torque acts.
     momentum: Vector3<f64>,
     pub turning_rad_s: Vector3<f64>,
     pub circle: Circle,
@@ -38,7 +38,7 @@ pub(crate) struct Ring {
     /// For how long it has been slow, s.
     slow_s: f64,
     pub asleep: bool,
-    /// Out of the picture, and no longer simulated.
+    /// Out of view, and no longer simulated.
     pub lost: bool,
 }
 
@@ -56,7 +56,7 @@ impl Ring {
             places_m: circle.places_m(directions),
             tube_radius_m: tube,
             mass_kg,
-            // A torus of even density.
+            // A torus of uniform density.
             about_axis_kg_m2: mass_kg * (major * major + 0.75 * tube * tube),
             across_kg_m2: mass_kg * (0.5 * major * major + 0.625 * tube * tube),
             force_n: Vector3::zeros(),
@@ -67,12 +67,12 @@ impl Ring {
         }
     }
 
-    /// How far it reaches from its middle, m.
+    /// Distance from its middle to its outermost point, m.
     pub(crate) fn reach_m(&self) -> f64 {
         self.circle.radius_m + self.tube_radius_m
     }
 
-    /// Whether it moves at all: neither asleep nor lost.
+    /// Whether it is simulated: neither asleep nor lost.
     pub(crate) const fn moves(&self) -> bool {
         !self.asleep && !self.lost
     }
@@ -86,7 +86,7 @@ impl Ring {
         self.torque_nm += (at_m - self.centre_m).cross(&push.force_n) + push.torque_nm;
     }
 
-    /// Moves on by `step_s` under gravity and the forces of this step, which are then forgotten (semi-implicit Euler).
+    /// Advances by `step_s` under gravity and the forces of this step, and clears the forces (semi-implicit Euler).
     pub(crate) fn advance(&mut self, step_s: f64, directions: &[[f64; 2]; PLACES]) {
         let weight_n = Vector3::z() * (-GRAVITY_M_S2 * self.mass_kg);
         self.velocity_m_s += (self.force_n + weight_n) * (step_s / self.mass_kg);
@@ -108,7 +108,7 @@ impl Ring {
         self.turn();
     }
 
-    /// The angular velocity that belongs to the momentum.
+    /// Computes the angular velocity from the momentum.
     fn turn(&mut self) {
         let axis = self.circle.axis;
         let along = axis * axis.dot(&self.momentum);
@@ -129,7 +129,7 @@ impl Ring {
         self.torque_nm = Vector3::zeros();
     }
 
-    /// At the end of a tick: `free` if no instrument touches it.
+    /// Called at the end of a tick; `free` if no instrument touches it.
     pub(crate) fn settle(&mut self, free: bool, period_s: f64) {
         let rim_m_s = self.turning_rad_s.norm() * self.circle.radius_m;
         let slow = free && self.velocity_m_s.norm() < REST_M_S && rim_m_s < REST_M_S;
@@ -141,7 +141,7 @@ impl Ring {
         self.slow_s >= REST_AFTER_S
     }
 
-    /// No longer computed until something touches it.
+    /// Stops its simulation until something touches it.
     pub(crate) fn sleep(&mut self) {
         self.asleep = true;
         self.stop();
@@ -164,7 +164,7 @@ impl Ring {
         self.clear_forces();
     }
 
-    /// Energy of its motion and its height, J.
+    /// Kinetic and potential energy, J.
     #[cfg(test)]
     pub(crate) fn energy_j(&self) -> f64 {
         0.5 * self.mass_kg * self.velocity_m_s.norm_squared()
@@ -172,7 +172,6 @@ impl Ring {
             + self.mass_kg * GRAVITY_M_S2 * self.centre_m.z
     }
 
-    /// Throws it, for tests.
     #[cfg(test)]
     pub(crate) fn throw(&mut self, centre_m: Vector3<f64>, velocity_m_s: Vector3<f64>, momentum: Vector3<f64>) {
         self.centre_m = centre_m;

@@ -1,4 +1,4 @@
-//! What a scene file says of its objects.
+//! The objects in a scene file.
 
 mod check;
 
@@ -22,25 +22,21 @@ pub use check::RINGS_MAX;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Setting {
-    /// The board under the pegs.
     pub board: Board,
     /// The pegs; those at x < 0 are the left side's.
     pub pegs: Pegs,
-    /// The shape of every ring.
     pub ring: Shape,
-    /// Where each ring is at the beginning.
+    /// Start position of each ring.
     pub rings: Vec<Start>,
     /// Coefficients of friction.
     pub friction: Friction,
     /// Stiffness and damping of contacts.
     pub contact: Contact,
-    /// Shafts and fingers of both instruments.
     pub jaws: Jaws,
-    /// What counts as in the picture.
+    /// The region that counts as in view.
     pub view: View,
 }
 
-/// A flat board, centred on the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Board {
@@ -54,15 +50,14 @@ pub struct Board {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Pegs {
-    /// Where each stands, x and y, m.
+    /// Positions, x and y, m.
     pub at_m: Vec<[f64; 2]>,
-    /// Radius, m.
     pub radius_m: f64,
     /// Height above the board, m.
     pub height_m: f64,
 }
 
-/// A ring: a torus of even density.
+/// A ring: a torus of uniform density.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Shape {
@@ -70,14 +65,13 @@ pub struct Shape {
     pub major_radius_m: f64,
     /// Radius of the tube, m.
     pub tube_radius_m: f64,
-    /// Mass, kg.
     pub mass_kg: f64,
 }
 
-/// Where a ring is at the beginning: `{ peg = 3 }` or `{ at_m = [x, y, z] }`, flat in both cases.
+/// Start position of a ring: `{ peg = 3 }` or `{ at_m = [x, y, z] }`, flat in both cases.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Start {
-    /// At the foot of this peg, counted from 0, on top of rings that are there already.
+    /// At the foot of this peg, counted from 0, or on top of earlier rings there.
     #[serde(rename = "peg")]
     Peg(usize),
     /// Its middle, m.
@@ -91,11 +85,8 @@ pub enum Start {
 pub struct Friction {
     /// Fingers and shafts on rings.
     pub jaw_ring: f64,
-    /// Rings on the board.
     pub ring_board: f64,
-    /// Rings on pegs.
     pub ring_peg: f64,
-    /// Rings on rings.
     pub ring_ring: f64,
     /// Instruments on board, pegs and each other.
     pub instrument: f64,
@@ -109,41 +100,39 @@ pub struct Friction {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Contact {
-    /// Instruments on board, pegs and each other: stiffness of one place, N/m. Both fingers of closed jaws are two places.
+    /// Instruments on board, pegs and each other: stiffness of one contact, N/m. The two fingers of closed jaws are two
+    /// contacts.
     pub stiffness_n_m: f64,
-    /// The same: damping, N s/m.
+    /// Damping of the same, N s/m.
     pub damping_n_s_m: f64,
     /// Rings on everything, N/m. Their damping is chosen so that they do not bounce.
     pub ring_stiffness_n_m: f64,
 }
 
-/// The instruments.
+/// Dimensions and stiffness of the instruments.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Jaws {
     /// From the hinge to the end of a finger, m.
     pub finger_length_m: f64,
-    /// Radius of a finger, m.
     pub finger_radius_m: f64,
-    /// Radius of the shaft, m.
     pub shaft_radius_m: f64,
-    /// Force at the end of the fingers per distance between where they are and where they are commanded, N/m.
+    /// Force at the end of the fingers per distance between actual and commanded position, N/m.
     pub stiffness_n_m: f64,
-    /// Greatest force with which they close or open, N at the end of a finger.
+    /// Maximum closing or opening force, N at the end of a finger.
     pub force_max_n: f64,
 }
 
-/// What counts as in the picture: a box, m.
+/// The region that counts as in view: a box, m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct View {
-    /// Its least x, y and z.
+    /// Minimum x, y and z.
     pub from_m: [f64; 3],
-    /// Its greatest x, y and z.
+    /// Maximum x, y and z.
     pub to_m: [f64; 3],
 }
 
-/// Why a setting was refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("the objects of the scene have {key} = {value}: it must be {allowed}")]
 pub struct SettingError {
@@ -175,8 +164,9 @@ impl Default for Board {
 }
 
 impl Default for Pegs {
-    /// Twelve, six on each side as in FLS (Derossis et al. 1998), as far apart as this workspace allows. The pegs of FLS boards are 25 to 30 mm
-    /// high and about 5 mm thick; these are thinner by as much as our rings are smaller than FLS's blocks.
+    /// Twelve, six on each side as in FLS (Derossis et al. 1998), as far apart as this workspace allows. The pegs of
+    /// FLS boards are 25 to 30 mm high and about 5 mm thick; these are thinner in the ratio of our rings to FLS's
+    /// blocks.
     fn default() -> Self {
         let rows_m = [-0.026, 0.0, 0.026];
         let side = |sign: f64| rows_m.into_iter().flat_map(move |y_m| [0.019, 0.045].map(|x_m| [sign * x_m, y_m]));
@@ -185,15 +175,16 @@ impl Default for Pegs {
 }
 
 impl Default for Shape {
-    /// 18 mm across, with a hole of 11 mm. The blocks of FLS are hollow triangles in a circle of 20 mm (block of `SurRoL`, Xu et al., IROS 2021);
-    /// a ring has no corners. The mass is ours: rubber of this volume would be 0.5 g, FLS's higher blocks are some grams.
+    /// 18 mm across, with a hole of 11 mm. The blocks of FLS are hollow triangles in a circle of 20 mm (block of
+    /// `SurRoL`, Xu et al., IROS 2021); a ring has no corners. The mass is our choice: rubber of this volume would be
+    /// 0.5 g, FLS's taller blocks have some grams.
     fn default() -> Self {
         Self { major_radius_m: 0.00725, tube_radius_m: 0.00175, mass_kg: 0.0015 }
     }
 }
 
 impl Default for Friction {
-    /// Serrated jaws on rubber hold better than a smooth peg or board. Ours, not measured.
+    /// Serrated jaws hold rubber better than a smooth peg or board does. Our choice, not measured.
     fn default() -> Self {
         Self { jaw_ring: 0.4, ring_board: 0.3, ring_peg: 0.2, ring_ring: 0.3, instrument: 0.15, patch_radius_m: 0.001 }
     }
@@ -208,8 +199,8 @@ impl Default for Contact {
 }
 
 impl Default for Jaws {
-    /// A 5 mm instrument with fingers of 10 mm. Fingers that are commanded to close on a ring press it with some 2.5 N. The most is ours: graspers
-    /// hold tissue with some N (Heijnsdijk et al., Surg. Endosc. 18, 2004).
+    /// A 5 mm instrument with fingers of 10 mm. Fingers that are commanded to close on a ring press it with about 2.5
+    /// N. The maximum is our choice: graspers hold tissue with some N (Heijnsdijk et al., Surg. Endosc. 18, 2004).
     fn default() -> Self {
         Self {
             finger_length_m: 0.010,
@@ -222,7 +213,7 @@ impl Default for Jaws {
 }
 
 impl Default for View {
-    /// The workspace, and what is above it.
+    /// The workspace and the space above it.
     fn default() -> Self {
         Self { from_m: [-0.06, -0.045, -0.01], to_m: [0.06, 0.045, 0.12] }
     }

@@ -1,4 +1,4 @@
-//! An instrument as bodies that touch: two fingers and a shaft, all capsules.
+//! An instrument as colliding bodies: two fingers and a shaft, all capsules.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -12,19 +12,18 @@ use crate::physics::{
 /// Two fingers, then the shaft.
 pub(crate) const PARTS: usize = 3;
 pub(crate) const SHAFT: usize = 2;
-/// The jaws follow their command, and give way to what opens them, with this time constant, s.
+/// Time constant with which the jaws follow their command and yield to opening forces, s.
 const FOLLOW_S: f64 = 0.01;
-/// The same against what is between them, s: long enough for the longest sub-step.
+/// The same against an object between them, s: long enough for the longest sub-step.
 const LEAST_S: f64 = 1.25e-3;
-/// Further than this from one step to the next an instrument is set down anew and sweeps nothing, m and rad.
+/// Beyond this distance between two steps an instrument is placed again without sweeping through space, m and rad.
 const JUMP_M: f64 = 0.03;
 const JUMP_RAD: f64 = 0.5;
 
-/// An instrument within a step.
 #[derive(Clone, Debug)]
 pub(crate) struct Tool {
     jaws: Jaws,
-    /// What slows the jaws, N s/m at the end of a finger.
+    /// Damping of the jaws, N s/m at the end of a finger.
     damping_n_s_m: f64,
     from: Instrument,
     to: Instrument,
@@ -44,7 +43,7 @@ pub(crate) struct Tool {
     force_n: Vector3<f64>,
     torque_nm: Vector3<f64>,
     opening_n: f64,
-    /// The same of the current sub-step alone.
+    /// For the current sub-step alone.
     now_opening_n: f64,
     pub touching: Touching,
 }
@@ -82,7 +81,7 @@ impl Tool {
         tool
     }
 
-    /// Begins a step at whose end the instrument is here.
+    /// Begins a step at whose end the instrument has this pose.
     pub(crate) fn aim(&mut self, at: &Instrument) {
         self.from = self.to;
         self.to = *at;
@@ -104,7 +103,7 @@ impl Tool {
         self.touching = Touching::default();
     }
 
-    /// Puts the capsules where they are at this share of the step.
+    /// Places the capsules at this fraction of the step.
     pub(crate) fn place(&mut self, share: f64) {
         let from = self.from.world_from_jaws.into_inner();
         let to = self.to.world_from_jaws.into_inner();
@@ -119,7 +118,7 @@ impl Tool {
         let (sin, cos) = libm::sincos(0.5 * self.opening_rad);
         for finger in 0..SHAFT {
             let side = side_of(finger);
-            // Closed fingers lie side by side: the middle of each is its radius away from the hinge.
+            // Closed fingers lie side by side: the middle of each is one radius away from the hinge.
             let out = x * cos - z * (side * sin);
             let along = z * cos + x * (side * sin);
             let from_m = self.hinge_m + out * (side * self.jaws.finger_radius_m);
@@ -133,7 +132,7 @@ impl Tool {
         self.parts[part].from_m.z.min(self.parts[part].to_m.z) - self.radii_m[part]
     }
 
-    /// Direction and lever in which a point of a finger moves when its half of the opening grows, m/rad.
+    /// Velocity of a point of a finger per rate of its half of the opening, m/rad.
     fn opens(&self, finger: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
         self.about.cross(&(point_m - self.hinge_m)) * side_of(finger)
     }
@@ -141,7 +140,7 @@ impl Tool {
     /// Velocity of a point of a part, m/s.
     pub(crate) fn velocity_at(&self, part: usize, point_m: &Vector3<f64>) -> Vector3<f64> {
         if part == SHAFT {
-            // The trocar stands still.
+            // The trocar does not move.
             let shaft = self.parts[SHAFT];
             let length_m = (shaft.to_m - shaft.from_m).norm().max(1e-6);
             return self.hinge_m_s * ((point_m - shaft.from_m).norm() / length_m).min(1.0);
@@ -150,22 +149,23 @@ impl Tool {
         rigid + self.opens(part, point_m) * (0.5 * self.opening_rad_s)
     }
 
-    /// Turning of a part about a direction, rad/s.
+    /// Rotation of a part about a direction, rad/s.
     pub(crate) fn spin_about(&self, part: usize, direction: &Vector3<f64>) -> f64 {
         if part == SHAFT { 0.0 } else { self.turning_rad_s.dot(direction) }
     }
 
-    /// Something pushes a part at a point.
+    /// Applies a push to a part at a point.
     pub(crate) fn push(&mut self, part: usize, at_m: &Vector3<f64>, push: &Push) {
         self.force_n += push.force_n;
         self.torque_nm += (at_m - self.tip_m).cross(&push.force_n) + push.torque_nm;
         if part != SHAFT {
-            // Both fingers move by half the opening, so half of the work of each counts.
+            // Each finger moves by half the opening, so half of its work counts.
             self.now_opening_n += 0.5 * push.force_n.dot(&self.opens(part, at_m)) / self.jaws.finger_length_m;
         }
     }
 
-    /// Moves the jaws on by `step_s`: a spring towards the command, limited in force, and what opens them, against a damper.
+    /// Advances the jaws by `step_s`: a spring towards the command, limited in force, and the opening forces, against a
+    /// damper.
     pub(crate) fn drive(&mut self, step_s: f64) {
         let Jaws { finger_length_m, stiffness_n_m, force_max_n, .. } = self.jaws;
         let commanded_rad = self.to.opening_rad.clamp(0.0, OPENING_MOST_RAD);

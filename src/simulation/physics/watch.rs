@@ -1,4 +1,5 @@
-//! Tells from the rings what happens. What lasts only a moment is no event: a ring that slips for 10 ms and is caught was not dropped.
+//! Detects the events of the rings. Very short states are not events: a ring that slips for 10 ms and is caught was not
+//! dropped.
 
 mod following;
 
@@ -9,11 +10,9 @@ use nima_core::{Side, task::Event};
 use crate::physics::objects::Objects;
 use following::Following;
 
-/// Most events that wait to be taken; later ones are lost, and counted.
+/// Maximum number of waiting events; further events are dropped and counted.
 const WAITING_MOST: usize = 256;
 
-/// Watches the rings.
-///
 /// ```
 /// use nima_simulation::physics::{Objects, Setting, Watch};
 ///
@@ -21,19 +20,19 @@ const WAITING_MOST: usize = 256;
 /// let mut watch = Watch::new(&objects);
 /// objects.step(&[None, None]);
 /// watch.look(&objects);
-/// assert_eq!(watch.next_event(), None, "nobody has touched anything");
+/// assert_eq!(watch.next_event(), None, "nothing was touched");
 /// ```
 #[derive(Clone, Debug)]
 pub struct Watch {
     rings: Vec<Following>,
     waiting: VecDeque<Event>,
     missed: u64,
-    /// Who touched any ring last.
+    /// The side that last touched any ring.
     last: Option<Side>,
 }
 
 impl Watch {
-    /// Begins to watch; where the rings are now is no event.
+    /// Begins to watch; the current states of the rings are not events.
     pub fn new(objects: &Objects) -> Self {
         Self {
             rings: objects.rings().iter().map(Following::new).collect(),
@@ -43,7 +42,7 @@ impl Watch {
         }
     }
 
-    /// Looks at the rings after a step; once for each step.
+    /// Examines the rings after a step; call it once for each step.
     pub fn look(&mut self, objects: &Objects) {
         for (ring, (following, state)) in self.rings.iter_mut().zip(objects.rings()).enumerate() {
             // The right one counts as the last if both touch.
@@ -64,12 +63,12 @@ impl Watch {
         }
     }
 
-    /// The next event that was not yet taken.
+    /// Returns the next event that has not been taken yet.
     pub fn next_event(&mut self) -> Option<Event> {
         self.waiting.pop_front()
     }
 
-    /// Events that were lost because nobody took them.
+    /// Number of events that were dropped because the queue was full.
     pub const fn missed(&self) -> u64 {
         self.missed
     }

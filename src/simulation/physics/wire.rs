@@ -1,8 +1,8 @@
-//! A loop that is led along a bent wire: where both touch, and with what force.
+//! A loop that is led along a bent wire: contact points and forces.
 //!
-//! Wire and board stand still and each loop is where its instrument is, so that a step is the law of the contacts at its end: there is nothing to
-//! integrate. What a penalty alone would let through, a loop that is pulled over the wire, is kept by remembering whether the wire goes
-//! through the loop: then the wire is pushed back inside, however far out it is.
+//! Wire and board are fixed and each loop has the pose of its instrument, so a step evaluates the contact law at its
+//! end, without integration. A penalty force alone would let a loop be pulled through the wire. Therefore each loop
+//! stores whether the wire passes through it; if so, the wire is pushed back inside, however far out it is.
 
 mod curve;
 mod following;
@@ -21,17 +21,18 @@ use curve::{Place, Reach};
 pub use following::WireTask;
 pub use setting::{Hoop, WireContact, WireSetting};
 
-/// Places at which a loop can touch the wire at once.
+/// Maximum number of simultaneous contacts of a loop with the wire.
 const PLACES: usize = 3;
-/// A place that is farther than this along the wire from where it was is another one, m.
+/// A contact that is farther than this along the wire from its last position is a different one, m.
 const MOVED_M: f64 = 2e-3;
-/// How far along the wire the place where it goes through a loop is looked for from one step to the next, m.
+/// Range along the wire in which the crossing of a loop is searched from one step to the next, m.
 const SEARCH_M: f64 = 0.015;
-/// So far outside its loop a wire is no longer in it: an arm that pulls this hard has torn it off, m.
+/// A wire that is this far outside its loop has been torn off, m.
 const TORN_OFF_M: f64 = 0.012;
-/// The place where a wire that lies outside its loop is closest to it is at most so far from where it goes through the loop's plane, m along it.
+/// Maximum distance, m along the wire, between the closest point of a wire outside its loop and its crossing of the
+/// loop's plane.
 const AROUND_M: f64 = 0.006;
-/// Further than this from one step to the next an instrument was set down anew, m.
+/// Beyond this distance between two steps an instrument was placed again, m.
 const JUMP_M: f64 = 0.03;
 
 /// A wire, the board under it, and a loop at the tip of each of two instruments.
@@ -74,31 +75,31 @@ pub struct Wire {
     states: [WireState; SIDES],
 }
 
-/// What a loop is doing.
+/// State of a loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WireState {
-    /// It touches the wire.
+    /// Whether it touches the wire.
     pub touches: bool,
-    /// How far along the wire from its free end the wire goes through it, m; `None` if it does not.
+    /// Position along the wire, m from its free end, at which it passes through the loop; `None` if it does not.
     pub along_m: Option<f64>,
-    /// How far both overlap where they do most, m.
+    /// Maximum overlap of loop and wire, m.
     pub deepest_m: f64,
 }
 
-/// A loop within a step, and what it remembers.
+/// A loop within a step, with its stored state.
 #[derive(Clone, Copy, Debug)]
 struct Loop {
     circle: Circle,
     velocity_m_s: Vector3<f64>,
     turning_rad_s: Vector3<f64>,
-    /// Where the wire goes through it, m along the wire.
+    /// Position along the wire at which it passes through the loop, m.
     through_m: Option<f64>,
     places: [Option<(f64, Memory)>; PLACES],
     on_board: Memory,
 }
 
 impl Wire {
-    /// The wire of a setting with a step each `period_s`. The setting must have been validated.
+    /// The wire of a setting with a step every `period_s`. The setting must have been validated.
     pub fn new(setting: &WireSetting, period_s: f64) -> Self {
         let period_s = if period_s > 0.0 { period_s.min(0.1) } else { 1e-3 };
         let contact = &setting.contact;
@@ -119,18 +120,18 @@ impl Wire {
         &self.curve
     }
 
-    /// What the loop of each side is doing.
+    /// State of each side's loop.
     pub const fn states(&self) -> &[WireState; SIDES] {
         &self.states
     }
 
-    /// Time from step to step, s.
+    /// Time between steps, s.
     pub const fn period_s(&self) -> f64 {
         self.period_s
     }
 
-    /// Moves on by one period, at whose end the instruments are here. An instrument with anything that is not a number counts as
-    /// absent. Returns what acts on each.
+    /// Advances by one period, at whose end the instruments have these poses. An instrument with a value that is not
+    /// finite counts as absent. Returns the loads on each.
     pub fn step(&mut self, instruments: &[Option<Instrument>; SIDES]) -> [Loads; SIDES] {
         let mut loads = [Loads::default(); SIDES];
         for side in 0..SIDES {
@@ -182,18 +183,18 @@ impl Wire {
         (loads, state)
     }
 
-    /// Where the wire goes through the loop now, m along it.
+    /// Returns the current position along the wire at which it passes through the loop, m.
     fn through_m(&self, held: &Loop, found: &Reach, both_m: f64) -> Option<f64> {
         let radius_m = held.circle.radius_m;
         let Some(before_m) = held.through_m else {
-            // It comes in over a free end, or it is set down around the wire.
+            // It enters over a free end, or is placed around the wire.
             return found.through.filter(|(_, off_axis_m)| *off_axis_m < radius_m - both_m).map(|(along_m, _)| along_m);
         };
         let along_m = self.curve.crossing(&held.circle, before_m, SEARCH_M)?;
         (held.off_axis_m(&self.curve.at(along_m)) < radius_m + TORN_OFF_M).then_some(along_m)
     }
 
-    /// The lowest point of the loop on the board.
+    /// Contact of the loop's lowest point with the board.
     fn on_board(&self, held: &mut Loop, loads: &mut Loads) {
         let Circle { centre_m, axis, radius_m, .. } = held.circle;
         let board = &self.setting.board;
@@ -216,7 +217,7 @@ impl Wire {
 }
 
 impl Loads {
-    /// One more place that touches a loop.
+    /// Adds a contact to a loop.
     fn add(&mut self, held: &Loop, at_m: &Vector3<f64>, law: &Law, memory: &mut Memory, touch: &Touch, period_s: f64) {
         let push = law.push(memory, touch, period_s);
         self.tip_n += push.force_n;
@@ -236,7 +237,6 @@ impl Loop {
         }
     }
 
-    /// The same loop a period later.
     fn moved(self, circle: Circle, period_s: f64) -> Self {
         Self {
             velocity_m_s: (circle.centre_m - self.circle.centre_m) / period_s,
@@ -260,14 +260,16 @@ impl Loop {
         unit_or(&(offset_m - self.circle.axis * self.circle.axis.dot(&offset_m)), &self.circle.across[0])
     }
 
-    /// How a place of the wire touches the loop's tube: where along the wire, where in space, and how.
+    /// Contact of a point of the wire with the loop's tube from inside: position along the wire, position in space, and
+    /// geometry.
     fn inside(&self, place: &Place, both_m: f64) -> (f64, Vector3<f64>, Touch) {
         let (outwards, _) = self.outwards(&place.wire_m);
         let (normal, distance_m) = unit_or(&(place.loop_m - place.wire_m), &outwards);
         self.touched(place.along_m, &place.loop_m, both_m - distance_m, normal)
     }
 
-    /// The same of a wire that goes through the loop and lies beyond the middle line of its tube: it is pushed back in.
+    /// The same for a wire that passes through the loop and lies beyond the middle line of its tube: it is pushed back
+    /// in.
     fn outside(&self, place: &Place, both_m: f64) -> (f64, Vector3<f64>, Touch) {
         let (outwards, _) = self.outwards(&place.wire_m);
         let (normal, distance_m) = unit_or(&(place.wire_m - place.loop_m), &outwards);
@@ -284,7 +286,7 @@ impl Loop {
         (along_m, *at_m, Touch { depth_m, normal, velocity_m_s: self.velocity_at(at_m), spin_rad_s: 0.0 })
     }
 
-    /// The memory of the place that was here, which then belongs to no other.
+    /// Returns the state of the contact that was here, and removes it from the list.
     fn remembered(before: &mut [Option<(f64, Memory)>; PLACES], along_m: f64) -> Memory {
         let near = |place: &&mut Option<(f64, Memory)>| {
             place.is_some_and(|(before_m, _)| (before_m - along_m).abs() < MOVED_M)

@@ -1,4 +1,4 @@
-//! Palpation: places on the tissue are marked, and each mark is over a lump or over none.
+//! Palpation: positions on the tissue are marked, and each mark is on a lump or not.
 
 use nalgebra::Vector3;
 use nima_core::task::Event;
@@ -9,7 +9,7 @@ use crate::{
     watched::{MARKS_MAX, Mark, Training},
 };
 
-/// The lumps, and what was marked.
+/// The lumps, and the marks.
 #[derive(Clone, Debug)]
 pub(super) struct Palpation {
     lumps: Vec<Lump>,
@@ -23,7 +23,7 @@ pub(super) struct Palpation {
 }
 
 impl Palpation {
-    /// Of this scene; `None` if nobody looks for lumps in it.
+    /// The palpation of this scene; `None` if its task is not to find lumps.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
         let tissue = scene.tissue?;
         let task = scene.task.as_ref()?;
@@ -40,7 +40,7 @@ impl Palpation {
         })
     }
 
-    /// The trial begins anew.
+    /// Starts the trial again.
     pub(super) fn begin(&mut self) {
         self.found.fill(false);
         self.marks = [None; MARKS_MAX];
@@ -48,7 +48,7 @@ impl Palpation {
         self.ended = false;
     }
 
-    /// Marks the place under a tip; beside the tissue there is none. The last lump that is found ends the trial.
+    /// Marks the position under a tip, if the tip is above the tissue. Finding the last lump ends the trial.
     pub(super) fn mark(&mut self, side: Side, tip_m: &Vector3<f64>, tell: &mut dyn FnMut(f64, Event)) {
         if self.ended || tip_m.x.abs() > self.half_m[0] || tip_m.y.abs() > self.half_m[1] {
             return;
@@ -69,12 +69,12 @@ impl Palpation {
         }
     }
 
-    /// The trial is over.
+    /// Ends the trial.
     pub(super) const fn end(&mut self) {
         self.ended = true;
     }
 
-    /// The lump over which this place is, or beside which it is near enough; the nearest of them.
+    /// Returns the nearest lump that this position hits, within the tolerance.
     fn lump_at(&self, at_m: &Vector3<f64>) -> Option<usize> {
         let apart_m = |lump: &Lump| (at_m.x - lump.at_m[0]).hypot(at_m.y - lump.at_m[1]) - lump.radius_m;
         let near = self.lumps.iter().enumerate().map(|(i, lump)| (i, apart_m(lump)));
@@ -108,7 +108,7 @@ mod tests {
         });
         let mut palpation = Palpation::of(&scene).unwrap();
         let marked = |lump| vec![Event::LumpMarked { side: Side::Right, lump }];
-        // 5 mm and 3 mm of tolerance; whatever the height.
+        // 5 mm and 3 mm of tolerance, at any height.
         assert_eq!(told(&mut palpation, [-0.0121, 0.0, -0.004]), marked(Some(0)));
         assert_eq!(told(&mut palpation, [-0.0119, 0.0, 0.03]), marked(None));
         assert_eq!(told(&mut palpation, [-0.02, 0.0, 0.0]), marked(Some(0)), "again");

@@ -1,4 +1,4 @@
-//! What the tip can touch: tissue, what is in it and on it, and walls.
+//! Everything that the tip can touch: tissue, objects in and on it, and walls.
 
 use nima_machine::config::{ConfigError, Ranges};
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,8 @@ pub struct Tissue {
     pub shear_stiffness_n_m: f64,
 }
 
-/// A layer on the tissue, of the law `f = k d^n`; all layers and the tissue are pressed together like springs in series.
+/// A layer on the tissue with the law `f = k d^n`; all layers and the tissue are compressed together like springs in
+/// series.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Layer {
@@ -36,16 +37,15 @@ pub struct Layer {
     pub exponent: f64,
 }
 
-/// Lumps in the tissue, which is an elastic foundation of this thickness on a hard ground.
+/// Lumps in the tissue, which is an elastic foundation of this thickness on a rigid ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lumps {
     /// Thickness of the tissue, m.
     pub thickness_m: f64,
-    /// The lumps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub list: Vec<Lump>,
-    /// More of them, at places that the scene's seed decides.
+    /// Additional lumps at positions determined by the scene's seed.
     pub drawn: Option<Drawn>,
 }
 
@@ -53,27 +53,26 @@ pub struct Lumps {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lump {
-    /// Where its middle is, x and y, m.
+    /// Position of its middle, x and y, m.
     pub at_m: [f64; 2],
     /// Its radius, m; its diameter is less than the tissue's thickness.
     pub radius_m: f64,
-    /// How many times stiffer than the tissue it is.
+    /// Stiffness as a multiple of the tissue's.
     pub times_stiffer: f64,
 }
 
-/// Lumps at places that are drawn by lot, so that nobody can learn them: another seed of the scene, other places.
+/// Lumps at random positions, so that they cannot be learnt: another seed of the scene gives other positions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drawn {
-    /// How many there are.
     pub count: u32,
-    /// Least and greatest radius, m.
+    /// Minimum and maximum radius, m.
     pub radius_m: [f64; 2],
-    /// How many times stiffer than the tissue they are.
+    /// Stiffness as a multiple of the tissue's.
     pub times_stiffer: f64,
-    /// From middle to middle they are at least so far apart, m.
+    /// Minimum distance between their middles, m.
     pub apart_m: f64,
-    /// Their middles are at least so far from the tissue's edges, m.
+    /// Minimum distance of their middles from the tissue's edges, m.
     pub margin_m: f64,
 }
 
@@ -81,17 +80,17 @@ pub struct Drawn {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Relaxation {
-    /// Share of the force that fades, below 1.
+    /// Fraction of the force that fades, below 1.
     pub share: f64,
     /// Its time constant, s.
     pub time_s: f64,
 }
 
-/// A membrane over the tissue, of the law `f = a d + b d^2` until it tears.
+/// A membrane over the tissue with the law `f = a d + b d^2` until it tears.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Membrane {
-    /// Its height at rest, m.
+    /// Height at rest, m.
     pub height_m: f64,
     /// `a`, N/m.
     pub stiffness_n_m: f64,
@@ -107,21 +106,18 @@ pub struct Membrane {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
-    /// A point of it, m.
+    /// A point on it, m.
     pub at_m: [f64; 3],
     /// The direction in which it pushes; of any length.
     pub normal: [f64; 3],
-    /// Stiffness, N/m.
     pub stiffness_n_m: f64,
-    /// Damping, N s/m.
     pub damping_n_s_m: f64,
 }
 
-/// Most lumps that are drawn.
+/// Maximum number of random lumps.
 const DRAWN_MOST: u32 = 32;
 
 impl Scene {
-    /// Checks what the tip can touch.
     pub(super) fn validate_ground(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         self.tissue.as_ref().map_or(Ok(()), |tissue| tissue.validate(ranges))?;
         for layer in &self.layers {

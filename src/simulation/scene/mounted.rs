@@ -1,4 +1,4 @@
-//! Which arms a rig has in a scene, and where their forces are measured. Sensors and tools belong to the rig.
+//! The arms of a rig in a scene, and where their forces are measured. Sensors and tools belong to the rig.
 
 use nima_machine::{
     config::{ConfigError, Ranges, RigConfig},
@@ -8,12 +8,12 @@ use nima_machine::{
 use super::Scene;
 
 impl Scene {
-    /// Name of the built-in scene for a rig where nobody has chosen one: two arms have two tasks.
+    /// Returns the default built-in scene of a rig: two arms have two tasks.
     pub fn default_for(rig: &RigConfig) -> &'static str {
         if rig.devices.as_ref().is_some_and(has_both_arms) { "bimanual" } else { "peg_transfer" }
     }
 
-    /// The scene as it is at this rig: a hand for each of its arms, whose trocars are where the rig file says.
+    /// Returns the scene adapted to this rig: a hand for each of its arms, with the trocars from the rig file.
     ///
     /// # Errors
     /// [`ConfigError::Range`] for a scene with rings or a wire at a rig with devices: only simulated instruments touch them.
@@ -43,11 +43,11 @@ impl Scene {
         }
     }
 
-    /// Whether it has one, with its force measured at the wrist.
+    /// Whether it has an arm pair with its force measured at the wrist.
     pub fn measures_at_wrist(&self, rig: &RigConfig, side: Side) -> bool {
         match &rig.devices {
-            // Also for emulated devices: a scene that says nothing of a wrist gets the paper's there.
-            // What is at another machine is measured there.
+            // Also for emulated devices: a scene without a wrist gets the paper's wrist. The force of an arm on another
+            // machine is measured there.
             Some(devices) => {
                 let at_wrist = |arm: &ArmSet| arm.sensor_at == SensorPlace::Wrist;
                 devices.ends.have_follower() && devices.arm(side).is_some_and(at_wrist)
@@ -61,11 +61,11 @@ fn has_both_arms(devices: &Settings) -> bool {
     Side::ALL.into_iter().all(|side| devices.arm(side).is_some())
 }
 
-/// Older scene files contained sensor and tool: adds to the error where they belong now.
+/// Older scene files contained sensor and tool: adds their new location to the error.
 pub(super) fn moved_to_the_rig(error: ConfigError) -> ConfigError {
     let ConfigError::Parse { kind, path, message } = error else { return error };
     let moved = ["serial", "tool"].into_iter().find(|key| {
-        // Only for the keys of [wrist], which are recognised by the list of expected keys.
+        // Only for keys of [wrist], which are recognised by the list of expected keys.
         message.contains(&format!("unknown field `{key}`")) && message.contains("`tool_mass_kg`")
     });
     let message = match (moved, message.split_once(": ")) {

@@ -1,4 +1,4 @@
-//! Objects that move, and the task that is scored.
+//! Moving objects, and the scored task.
 
 use nima_machine::config::{ConfigError, Ranges};
 
@@ -6,7 +6,6 @@ use super::{Scene, Task};
 use crate::{RINGS_MAX, physics::SettingError};
 
 impl Scene {
-    /// Checks the objects and the task.
     pub(super) fn validate_objects(&self, ranges: &Ranges<'_>) -> Result<(), ConfigError> {
         if let Some(objects) = &self.objects {
             let rings = objects.rings.len();
@@ -44,7 +43,7 @@ impl Scene {
         ranges.check("task.lumps", told as f64, told == there, "the number of lumps in the scene, or left out")
     }
 
-    /// Tells the task how many lumps there are.
+    /// Sets the number of lumps in the task.
     pub(super) fn count_lumps(&mut self) {
         let count = self.placed_lumps().filter(|_| self.is_searched()).map(|lumps| lumps.list.len() as u32);
         if let Some(task) = &mut self.task {
@@ -53,7 +52,7 @@ impl Scene {
     }
 }
 
-/// Most lumps of a palpation.
+/// Maximum number of lumps of a palpation.
 const LUMPS_MAX: usize = 64;
 
 #[cfg(test)]
@@ -63,7 +62,7 @@ mod tests {
     use super::*;
     use crate::scene::SCENES;
 
-    /// A built-in scene with this in place of that.
+    /// Returns a built-in scene with one text replaced.
     fn changed(scene: &str, from: &str, to: &str) -> Result<Scene, ConfigError> {
         let text = SCENES.iter().find(|(name, _)| *name == scene).unwrap().1;
         assert!(text.contains(from), "{from}");
@@ -75,7 +74,7 @@ mod tests {
         let scene = Scene::load("find_lumps").unwrap();
         assert!(scene.is_searched() && scene.is_played() && scene.is_drawn_by_lot());
         assert_eq!(scene.task.as_ref().unwrap().lumps, Some(scene.placed_lumps().unwrap().list.len() as u32));
-        assert!(!Scene::load("lumps").unwrap().is_played(), "nobody looks for them");
+        assert!(!Scene::load("lumps").unwrap().is_played(), "no task to find them");
         let told = |more: &str| changed("find_lumps", "kind = \"palpation\"", &format!("kind = \"palpation\"\n{more}"));
         assert!(told("lumps = 5").is_ok());
         assert!(told("lumps = 4").unwrap_err().to_string().contains("task.lumps"));

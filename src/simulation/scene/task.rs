@@ -1,4 +1,4 @@
-//! The training task of a scene: what the simulation needs of it, and the rest for whoever scores it.
+//! The training task of a scene: the keys that the simulation needs, and the others for the score.
 
 use std::{ops::RangeInclusive, sync::OnceLock};
 
@@ -11,15 +11,15 @@ use toml::{Table, Value};
 pub struct Task {
     /// Name for the screen.
     pub name: String,
-    /// What is done.
+    /// Kind of task.
     pub kind: TaskKind,
-    /// A mark finds a lump if it is over it, or this far beside it, m.
+    /// A mark finds a lump if it is on the lump, or at most this far from it, m.
     #[serde(default = "mark_tolerance_m")]
     pub mark_tolerance_m: f64,
-    /// Number of lumps that can be found. In a scene with lumps it is theirs.
+    /// Number of lumps that can be found. In a scene with lumps it is their number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumps: Option<u32>,
-    /// Every other key: what the score goes by.
+    /// All other keys: the parameters of the score.
     #[serde(flatten)]
     pub scored: Table,
 }
@@ -29,18 +29,18 @@ const fn mark_tolerance_m() -> f64 {
 }
 
 impl Task {
-    /// Tolerance of a mark where none is given, m.
+    /// Default tolerance of a mark, m.
     pub const MARK_TOLERANCE_M: f64 = 0.003;
     /// Range of that tolerance, m.
     pub const MARK_TOLERANCES_M: RangeInclusive<f64> = 0.0..=0.05;
 
-    /// The same without its texts.
+    /// Returns the task without its texts.
     pub(super) fn anonymous(&mut self, name: &str) {
         name.clone_into(&mut self.name);
         keep_numbers(&mut self.scored);
     }
 
-    /// Has the keys that the simulation does not know read by whoever scores tasks.
+    /// Lets the registered reader check the keys that the simulation does not use.
     pub(super) fn read(&mut self) -> Result<(), String> {
         SCORING.get().map_or(Ok(()), |read| read(self))
     }
@@ -51,13 +51,13 @@ fn keep_numbers(table: &mut Table) {
     table.iter_mut().filter_map(|(_, value)| value.as_table_mut()).for_each(keep_numbers);
 }
 
-/// Reads [`Task::scored`], completes it with its defaults, and says in one line what is wrong with it.
+/// Reads [`Task::scored`], completes it with its defaults, and returns a one-line message if it is invalid.
 pub type ReadTask = fn(&mut Task) -> Result<(), String>;
 
 static SCORING: OnceLock<ReadTask> = OnceLock::new();
 
-/// Has the task of every scene that is loaded from now on read by whoever scores it. A program does it once, before it loads any; in one that
-/// does not, those keys are carried along unread.
+/// Registers the reader for the tasks of all scenes that are loaded from now on. A program calls it once, before it
+/// loads a scene; without a reader, those keys are kept unread.
 pub fn score_tasks_by(read: ReadTask) {
     SCORING.set(read).ok();
 }

@@ -40,7 +40,7 @@ pub struct Imu {
     pub bias_m_s2: Vector3<f64>,
     /// Standard deviation of white noise per sample and axis, m/s^2.
     pub noise_m_s2: f64,
-    /// It reads towards the ground instead, as with some drivers.
+    /// Whether it reads towards the ground instead, as with some drivers.
     #[serde(default)]
     pub reads_gravity: bool,
 }
@@ -86,7 +86,7 @@ pub struct TissueSensor {
     pub noise_n: f64,
     /// Standard deviation of the tracker's orientation about each axis, degrees.
     pub tracker_noise_deg: f64,
-    /// It measures the force on the tissue instead of the force on the instrument, like a balance.
+    /// Whether it measures the force on the tissue instead of the force on the instrument, like a balance.
     #[serde(default)]
     pub reads_tissue: bool,
 }
@@ -107,13 +107,13 @@ pub enum Flaw {
     Touches,
     /// Never holds still.
     Trembles,
-    /// Leaves the tool where it is, whatever orientation is asked for.
+    /// Leaves the tool where it is, whatever orientation is requested.
     KeepsOneOrientation,
-    /// Pushes along one line, whatever direction is asked for.
+    /// Pushes along one line, whatever direction is requested.
     PushesOneLine,
-    /// Pushes within one plane, whatever direction is asked for.
+    /// Pushes within one plane, whatever direction is requested.
     PushesOnePlane,
-    /// Works straight under the trocar only, whatever is asked for.
+    /// Works only straight under the trocar, whatever position is requested.
     WorksInOnePlace,
     /// Leans on the tissue's stand at times: the two sensors then do not measure the same force.
     LeansOnTheStand,

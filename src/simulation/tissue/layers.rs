@@ -1,16 +1,17 @@
-//! Layers of tissue, one on the other, as springs in series.
+//! Stacked layers of tissue as springs in series.
 
 use crate::scene::Layer;
 
-/// Halvings and Newton steps at most: 52 bits.
+/// Maximum number of halvings and Newton steps: 52 bits.
 const STEPS_MAX: u32 = 60;
 
-/// Force (N) under a tip that has pressed all layers together by `depth_m`: each gives way by `(f / k)^(1/n)` under the same force `f`, and
-/// together they give way by `depth_m` (springs in series; Johnson, Contact Mechanics, 1985, section 4.3, for an elastic foundation).
+/// Returns the force (N) on a tip that has compressed all layers together by `depth_m`: each yields by `(f / k)^(1/n)`
+/// under the same force `f`, and together they yield by `depth_m` (springs in series; Johnson, Contact Mechanics, 1985,
+/// section 4.3, for an elastic foundation).
 ///
-/// Newton's method, kept inside the interval in which the force lies: the sum rises with the force.
+/// Newton's method, kept inside the interval of the solution: the sum rises with the force.
 pub(super) fn force_n(layers: &[Layer], depth_m: f64) -> f64 {
-    // Each layer alone would be the stiffest answer: the softest of them bounds the force.
+    // Each layer alone is stiffer than all together, so the softest layer bounds the force.
     let alone_n = |layer: &Layer| layer.stiffness * depth_m.powf(layer.exponent);
     let mut low_n = 0.0;
     let mut high_n = layers.iter().map(alone_n).fold(f64::INFINITY, f64::min);

@@ -5,13 +5,13 @@ use nima_core::noise::Noise;
 
 use crate::scene::{Drawn, Lump, Lumps};
 
-/// Draws for one lump before there is no room for it.
+/// Number of draws for one lump before it is given up for lack of room.
 const DRAWS_MOST: u32 = 2000;
-/// Keeps the lot of the lumps apart from that of tremor and noise.
+/// Makes the positions of lumps independent of the random sequences of tremor and noise.
 const LOT: u64 = 0x1_0b05;
 
 impl Lumps {
-    /// The same with a place for each lump that is drawn; fewer if there is no room for all.
+    /// Returns the lumps with a position for each random one; fewer if there is no room for all.
     #[must_use]
     pub(crate) fn placed(&self, seed: u64, size_m: [f64; 2]) -> Self {
         let mut placed = Self { drawn: None, ..self.clone() };
@@ -34,19 +34,19 @@ impl Lumps {
     }
 }
 
-/// How many times stiffer the tissue is under a tip at this place than without lumps.
+/// Returns the stiffness of the tissue under a tip at this position, as a multiple of the stiffness without lumps.
 ///
 /// The tissue is an elastic foundation (Johnson, Contact Mechanics, 1985, section 4.3): independent columns of height `h`, whose stiffness is
 /// `E / h`. A lump of `r` times their modulus fills the chord `t` of its sphere above the place; the column is then as one of the
 /// height `h - t (1 - 1/r)`.
 pub(super) fn factor(lumps: &Lumps, tip_m: &Vector3<f64>) -> f64 {
     let filled_m: f64 = lumps.list.iter().map(|lump| lump.times_softer(tip_m)).sum();
-    // Lumps on top of each other leave a column of a twentieth.
+    // Overlapping lumps leave at least a twentieth of a column.
     lumps.thickness_m / (lumps.thickness_m - filled_m).max(0.05 * lumps.thickness_m)
 }
 
 impl Lump {
-    /// Height that the lump takes from the column at this place, m.
+    /// Height by which the lump shortens the column at this position, m.
     fn times_softer(&self, tip_m: &Vector3<f64>) -> f64 {
         let [x_m, y_m] = self.at_m;
         let aside = (tip_m.x - x_m).hypot(tip_m.y - y_m);
@@ -84,7 +84,7 @@ mod tests {
             }
             seen.push(placed.list[0].at_m);
         }
-        // No corner of the tissue is spared.
+        // The draws reach every corner of the tissue.
         for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
             let near = seen.iter().filter(|[x_m, y_m]| x * x_m > 0.0 && y * y_m > 0.0).count();
             assert!(near > 25, "{near} of 200 in this corner");
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn over_the_middle_the_column_is_shorter_by_the_lump() {
         let factor = factor(&lumps(), &Vector3::new(0.01, -0.02, 0.0));
-        // 30 mm of which 12 mm are ten times as stiff.
+        // 30 mm, 12 mm of them ten times as stiff.
         assert!((factor - 30.0 / (18.0 + 1.2)).abs() < 1e-12, "{factor}");
     }
 

@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 
 use crate::scene::Membrane as Config;
 
-/// Holes that are remembered; the oldest closes when there are more.
+/// Number of holes that are stored; the oldest closes when there are more.
 const HOLES: usize = 32;
 
-/// A membrane: it gives way as `a d + b d^2` until it tears at a force (the capsule of an organ before a needle breaks through: Okamura,
-/// Simone and O'Leary, IEEE Trans. Biomed. Eng. 51(10), 2004). A hole stays.
+/// A membrane with the law `a d + b d^2` until it tears at a force (the capsule of an organ before a needle breaks
+/// through: Okamura, Simone and O'Leary, IEEE Trans. Biomed. Eng. 51(10), 2004). A hole stays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Membrane {
     config: Config,
@@ -21,7 +21,7 @@ impl Membrane {
         Self { config, holes_m: [None; HOLES], torn: 0 }
     }
 
-    /// Force along z on a tip at this place, N; call once per step.
+    /// Returns the force along z on a tip at this position, N; call it once per step.
     pub(super) fn force_n(&mut self, tip_m: &Vector3<f64>) -> f64 {
         let Config { height_m, stiffness_n_m, stiffening_n_m2, tears_at_n, hole_radius_m } = self.config;
         let depth_m = height_m - tip_m.z;
@@ -38,7 +38,7 @@ impl Membrane {
         0.0
     }
 
-    /// How often it has torn.
+    /// Number of tears.
     pub(super) const fn tears(&self) -> usize {
         self.torn
     }
@@ -75,6 +75,6 @@ mod tests {
         assert!((1.48..1.5).contains(&most_n) && membrane.tears() == 1, "{most_n} N");
         assert!(membrane.force_n(&Vector3::new(0.002, 0.0, 0.0)).abs() < 1e-15, "in the hole");
         let beside_n = membrane.force_n(&Vector3::new(0.004, 0.0, 0.0));
-        assert!(beside_n > 0.5, "beside the hole: {beside_n} N");
+        assert!(beside_n > 0.5, "next to the hole: {beside_n} N");
     }
 }

@@ -1,4 +1,4 @@
-//! Contact of a tip with soft tissue, and what a scene may add to it.
+//! Contact of a tip with soft tissue, and the additional effects of a scene.
 
 mod layers;
 mod lumps;
@@ -11,13 +11,13 @@ use nalgebra::Vector3;
 use self::{membrane::Membrane, relaxation::Relaxing};
 use crate::scene::{Layer, Lumps, Scene, Tissue as TissueConfig};
 
-/// Soft tissue. Without effects its only state is how far the tip has dragged its surface sideways.
+/// Soft tissue. Without effects its only state is the lateral displacement of its surface by the tip.
 #[derive(Clone, Debug)]
 pub struct Tissue {
     config: TissueConfig,
     /// Rest position of the surface point under the tip, m (horizontal).
     anchor_m: Option<Vector3<f64>>,
-    /// What the scene adds; each costs only where it is listed.
+    /// Effects of the scene; each costs time only where it is listed.
     layers: Vec<Layer>,
     lumps: Option<Lumps>,
     relaxing: Option<Relaxing>,
@@ -25,12 +25,11 @@ pub struct Tissue {
 }
 
 impl Tissue {
-    /// Untouched tissue.
     pub const fn new(config: TissueConfig) -> Self {
         Self { config, anchor_m: None, layers: Vec::new(), lumps: None, relaxing: None, membrane: None }
     }
 
-    /// The untouched tissue of this scene with all that the scene adds to it, for steps of this length (s); `None` without tissue.
+    /// The untouched tissue of this scene with all its effects, for steps of this length (s); `None` without tissue.
     pub fn of(scene: &Scene, step_s: f64) -> Option<Self> {
         let Scene { layers, lumps, relaxation, membrane, .. } = scene;
         let config = scene.tissue?;
@@ -47,24 +46,24 @@ impl Tissue {
         })
     }
 
-    /// The next call of [`contact_n`](Self::contact_n) comes this long after the one before it, s, and further ones too. A time of
-    /// 0 changes nothing.
+    /// Sets the time between calls of [`contact_n`](Self::contact_n) from the next call on, s. A time of 0 changes
+    /// nothing.
     pub(crate) fn set_step(&mut self, step_s: f64) {
         if let Some(relaxing) = self.relaxing.as_mut().filter(|_| step_s > 0.0) {
             relaxing.set_step(step_s);
         }
     }
 
-    /// How often the membrane has torn.
+    /// Number of tears in the membrane.
     pub fn tears(&self) -> usize {
         self.membrane.as_ref().map_or(0, Membrane::tears)
     }
 
-    /// Force on the tip (N) at this position (m) and velocity (m/s); call once per step.
+    /// Returns the force on the tip (N) at this position (m) and velocity (m/s); call it once per step.
     ///
-    /// Normal force after Hunt and Crossley, `k d^n (1 + c d')`, never negative; with layers, lumps and relaxation in the place of
-    /// `k d^n` where the scene has them. Tangential force elastic up to the Coulomb limit, then sliding (Dahl's model without the
-    /// hysteresis exponent).
+    /// Normal force after Hunt and Crossley, `k d^n (1 + c d')`, never negative; where the scene has layers, lumps or
+    /// relaxation, they replace `k d^n`. Tangential force elastic up to the Coulomb limit, then sliding (Dahl's model
+    /// without the hysteresis exponent).
     ///
     /// ```
     /// use nalgebra::Vector3;
@@ -106,7 +105,7 @@ impl Tissue {
         Vector3::new(0.0, 0.0, normal_n) - held_m * shear_stiffness_n_m + membrane_n
     }
 
-    /// Force of the tissue that is pressed in by this depth and held there for no time, N.
+    /// Force of the tissue that is compressed by this depth, before relaxation, N.
     fn elastic_n(&self, depth_m: f64, tip_m: &Vector3<f64>) -> f64 {
         let TissueConfig { stiffness, exponent, .. } = self.config;
         let even_n = match self.layers.as_slice() {

@@ -2,7 +2,7 @@
 
 use crate::scene::Relaxation;
 
-/// Steps that differ by less than this are equally long, s.
+/// Steps that differ by less than this count as equally long, s.
 const ROUNDING_S: f64 = 1e-9;
 
 /// The state of tissue that relaxes: quasi-linear viscoelasticity (Fung, Biomechanics, 1993, section 7.6) with one exponential, which is the
@@ -12,9 +12,9 @@ pub(super) struct Relaxing {
     config: Relaxation,
     /// Length of a step, s.
     step_s: f64,
-    /// Share of the distance to the elastic force that is left after a step.
+    /// Fraction of the distance to the elastic force that remains after a step.
     decay: f64,
-    /// Mean of the elastic force over a step that counts, by its shape inside the step.
+    /// Weight of the elastic force over a step, which depends on its course within the step.
     ramp: f64,
     elastic_n: f64,
     relaxed_n: f64,
@@ -28,7 +28,7 @@ impl Relaxing {
         relaxing
     }
 
-    /// From now on a step has this length; one that differs by the rounding of times is the same.
+    /// Sets the length of the following steps; a difference within rounding is ignored.
     pub(super) fn set_step(&mut self, step_s: f64) {
         if (step_s - self.step_s).abs() <= ROUNDING_S {
             return;
@@ -36,11 +36,11 @@ impl Relaxing {
         let over = step_s / self.config.time_s;
         self.step_s = step_s;
         self.decay = (-over).exp();
-        // For an elastic force that changes linearly during the step the solution is exact.
+        // Exact for an elastic force that changes linearly during the step.
         self.ramp = 1.0 - (1.0 - self.decay) / over;
     }
 
-    /// The force (N) after a step at whose end the force of the elastic tissue is this.
+    /// Returns the force (N) after a step at whose end the elastic force has this value.
     pub(super) fn step(&mut self, elastic_n: f64) -> f64 {
         let before_n = std::mem::replace(&mut self.elastic_n, elastic_n);
         self.relaxed_n = before_n + (self.relaxed_n - before_n) * self.decay + (elastic_n - before_n) * self.ramp;
@@ -63,7 +63,7 @@ mod tests {
         assert!((first_n - 2.0).abs() < 1e-3, "{first_n}");
         for i in 1..=6000 {
             let force_n = tissue.step(2.0);
-            // The ramp of the first millisecond counts as a step in its middle.
+            // The ramp of the first millisecond acts like a jump in its middle.
             let t_s = (f64::from(i) + 0.5) * STEP_S;
             let exact_n = 2.0 * (1.0 - 0.4 * (1.0 - (-t_s / 0.8).exp()));
             assert!((force_n - exact_n).abs() < 1e-6, "{force_n} N instead of {exact_n} N at {t_s} s");

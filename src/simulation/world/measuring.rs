@@ -1,4 +1,4 @@
-//! What a rig would measure in the world: force on the tip, wrist, handle and gripper.
+//! The measurements of a rig in the world: force on the tip, wrist, handle and gripper.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::{
@@ -17,12 +17,12 @@ use crate::{
 };
 
 impl World {
-    /// The person at the arm, inside this world or outside.
+    /// Returns the touch of the person at the arm, inside this world or outside.
     fn hands(&self) -> Touch {
         self.person.as_ref().map_or(self.touch, Person::touch)
     }
 
-    /// Force on the tip by the tissue or a person, N; call once per step.
+    /// Returns the force on the tip by the tissue or a person, N; call it once per step.
     fn contact_n(&mut self) -> Vector3<f64> {
         let passed_s = self.time_s - std::mem::replace(&mut self.measured_s, self.time_s);
         let tissue_n = match &mut self.tissue {
@@ -65,7 +65,7 @@ impl World {
         Sensed::AtTip(tip_n + noise_n)
     }
 
-    /// What the devices would read. This world's arm has no joints.
+    /// Returns the devices' raw readings. This world's arm has no joints.
     fn raw(&self, leader_m: &Vector3<f64>, sensed: &Sensed) -> RawReadings {
         let parts = match sensed {
             Sensed::AtTip(force_n) | Sensed::FarEnd(Identified { force_n, .. }) => {
@@ -84,10 +84,10 @@ impl World {
         }
     }
 
-    /// What a rig would measure now; once per step.
+    /// Returns the current measurements of a rig; call it once per step.
     pub(crate) fn measure(&mut self) -> Inputs {
         let sensed = self.sense();
-        // This world has no arm of joints, and its tracker tells no places.
+        // This world has no jointed arm, and its tracker reports no positions.
         let wrench = sensed.wrist().map(|sample| sample.raw);
         let hand_m = self.hand.position_m();
         let leader_m = self

@@ -39,7 +39,7 @@ fn peg_transfer_presses_with_a_few_newtons_and_lets_go() {
 #[test]
 fn a_seed_repeats_exactly() {
     let scene = Scene::load("peg_transfer").unwrap();
-    // As text, exact to the last bit: channels that a device does not have are NaN, which equals nothing.
+    // Compared as text, exact to the last bit: missing channels are NaN, which equals nothing.
     let [one, other] = [(); 2].map(|()| format!("{:?}", run(&scene, 2.0)));
     assert!(one == other && one.contains("tip_m"));
 }
@@ -80,7 +80,7 @@ fn a_force_on_the_hand_moves_it_and_a_poisoned_one_does_not() {
     assert_eq!(poisoned, still);
 }
 
-/// Times of the loop in tenths of a millisecond: most ticks a period after the one before, some late, some soon after a late one.
+/// Times of the loop in tenths of a millisecond: most ticks one period apart, some late, some soon after a late one.
 fn late_ticks() -> impl Iterator<Item = u32> {
     [10, 10, 14, 6, 32, 8, 45, 5, 10, 19, 1].into_iter().cycle().scan(0, |now, interval| {
         *now += interval;
@@ -105,7 +105,7 @@ fn a_late_tick_finds_the_hand_where_it_is_by_then() {
         let there_m = before_m + (after_m - before_m) * (f64::from(tenth % 10) / 10.0);
         fastest_m_s = fastest_m_s.max((after_m - before_m).norm() / 1e-3);
         let off_m = (late.hand().position_m() - there_m).norm();
-        // Half a period is 90 um at the largest speed; unequal steps of integration differ by less.
+        // Half a period is 90 um at the maximum speed; unequal integration steps differ by less.
         assert!(off_m < 2e-5, "at {:.1} ms: {:.1} um", f64::from(tenth) / 10.0, 1e6 * off_m);
     }
     assert!(fastest_m_s > 0.1, "{fastest_m_s} m/s");

@@ -1,4 +1,4 @@
-//! A force sensor's frames in a stream of any bytes, and the answers of its settings.
+//! A force sensor's frames within arbitrary bytes, and the answers about its settings.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Packets of servos in a stream of any bytes.
+//! Packets of servos within arbitrary bytes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

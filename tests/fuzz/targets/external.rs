@@ -1,4 +1,4 @@
-//! Datagrams of a device that a program of the user's brings.
+//! Datagrams of a user's own device program.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Answers of a Haply handle in a stream of any bytes.
+//! Answers of a Haply handle within arbitrary bytes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

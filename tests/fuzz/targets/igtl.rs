@@ -1,4 +1,4 @@
-//! OpenIGTLink messages: whatever is read can be written, and reads the same.
+//! OpenIGTLink messages: every parsed message can be written, and reads the same.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

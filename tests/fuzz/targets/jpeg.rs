@@ -1,4 +1,4 @@
-//! Pictures of the endoscope.
+//! Images of the endoscope.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Frames of an arm, alone and in a stream of any bytes.
+//! Frames of an arm, alone and within arbitrary bytes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
     for piece in bytes.chunks(64) {
         let room = reader.room();
         let count = piece.len().min(room.len());
-        assert!(count > 0, "the stream goes on");
+        assert!(count > 0, "the stream continues");
         room[..count].copy_from_slice(&piece[..count]);
         reader.filled(count);
         while reader.next_frame().is_some() {}

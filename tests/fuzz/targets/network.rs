@@ -1,4 +1,4 @@
-//! Datagrams between two machines, as they are before and after decryption.
+//! Datagrams between two machines, before and after decryption.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -33,10 +33,10 @@ pub(super) struct Arguments {
     watching: Watching,
     #[command(flatten)]
     network: ToFollower,
-    /// Start in this view (default: the one used last)
+    /// Start in this view (default: the last one used)
     #[arg(long)]
     role: Option<Role>,
-    /// Language of the window: en or de (default: the one chosen last, at first en); the command line stays English
+    /// Language of the window: en or de (default: the last one chosen, initially en); the command line stays English
     #[arg(long, value_name = "LANGUAGE", hide_possible_values = true)]
     language: Option<Language>,
     /// Open this calibration wizard at the start
@@ -63,13 +63,13 @@ pub(super) struct Arguments {
     /// Write the cost of the display (JSON: frame times, processor, memory, start-up) to this file when the window closes
     #[arg(long, value_name = "FILE")]
     frames: Option<PathBuf>,
-    /// Seconds shown in the traces at the start
+    /// Time span of the traces at the start, s
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     traces: Option<f64>,
-    /// Start idle; without this, the built-in rigs simulated and emulated engage by themselves
+    /// Start idle; by default the built-in rigs simulated and emulated engage automatically
     #[arg(long)]
     at_rest: bool,
-    /// Block the window for this many seconds, once, to show that the loop is not affected
+    /// Block the window once for this many seconds, to show that the loop is not affected
     #[arg(long, value_name = "S", value_parser = super::run::positive_seconds)]
     stall: Option<f64>,
 }
@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let line = arguments.network.open(&mut rig, &scene)?;
     let leave = arguments.setup.leave()?;
     let choice = arguments.setup.choice();
-    // The emulators of the whole rig are the follower's.
+    // The follower runs the emulators of the whole rig.
     let emulated = rig.devices.as_ref().filter(|_| line.is_none());
     let emulators = Emulators::start(&choice.rig, &choice.scene, emulated)?;
     let mut in_force = InForce::load(None, &rig, &scene);
@@ -96,12 +96,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let at_rest = arguments.at_rest || arguments.calibrate.is_some() || arguments.session.is_some();
     let by_itself = by_itself::engages(Starter::Window, arguments.setup.rig(), &rig, arguments.network.arm());
     plan.engage = by_itself && !at_rest && plan.may_engage();
-    // Pictures are taken of a session that nobody looks for afterwards.
+    // Screenshots are taken of a session that is not needed afterwards.
     let folder = in_force.store().and_then(|store| store.folder().parent()).filter(|_| arguments.pictures.is_none());
     let servers = arguments.watching.start()?;
     anyhow::ensure!(
         servers.is_empty() || folder.is_some(),
-        "who watches sees what is recorded, and there is no folder for sessions: set NIMA_DATA_DIR"
+        "viewers see recorded data, but no folder for sessions was found: set NIMA_DATA_DIR"
     );
     let mut sessions = Sessions::of_user(folder, servers);
     let network = arguments.network.clone();
@@ -127,7 +127,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     console::run(Begun { choice, emulators, started, rig, scene, sessions, far }, options)?;
     if leave.is_asked() {
-        tell("nima: ended as asked: force and drives are off");
+        tell("nima: ended on request: force and drives are off");
     }
     anyhow::ensure!(
         album.is_none_or(|album| album.is_complete()),

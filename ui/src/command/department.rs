@@ -1,4 +1,4 @@
-//! `nima department`: rigs that others may watch and record. The extra of this name does it.
+//! `nima department`: rigs that others may watch and record. The extra of this name implements it.
 
 use std::path::PathBuf;
 
@@ -11,36 +11,36 @@ use crate::{console::roles::Role, extras, language::Language};
 pub(crate) enum DepartmentCommand {
     /// Create a department on this machine, which issues the certificates
     Create {
-        /// Its name: letters, digits and -
+        /// Name of the department: letters, digits and -
         name: String,
     },
-    /// Issue a certificate: a file to carry to a rig or to a machine that watches
+    /// Issue a certificate: a file for a rig or for a viewing machine
     Issue {
         /// Name of that machine: letters, digits and -
         name: String,
-        /// It may watch only
+        /// Allow viewing only
         #[arg(long)]
         watcher: bool,
-        /// The file
+        /// Certificate file to write
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Take the certificate that was issued for this machine
+    /// Install the certificate issued for this machine
     Join {
-        /// The file
+        /// Certificate file
         file: PathBuf,
     },
     /// List the rigs that are shared now
     Rigs(RigsArguments),
-    /// Show a rig of another machine in a window that can do nothing to it
+    /// Show a rig of another machine in a view-only window
     Monitor(MonitorArguments),
-    /// Record the sessions of a rig of another machine into a folder here
+    /// Record the sessions of a rig of another machine into a local folder
     Record(RecordArguments),
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct RigsArguments {
-    /// Ask this address instead of the local network; may be repeated
+    /// Query this address instead of the local network; may be repeated
     #[arg(long, value_name = "HOST[:PORT]")]
     pub(crate) at: Vec<String>,
     /// Print the list as one JSON object
@@ -48,7 +48,7 @@ pub(crate) struct RigsArguments {
     pub(crate) json: bool,
 }
 
-/// The views of a window that can do nothing to its rig.
+/// Views of a view-only window.
 fn watching_role(word: &str) -> Result<Role, String> {
     match word {
         "surgeon" => Ok(Role::Surgeon),
@@ -57,12 +57,11 @@ fn watching_role(word: &str) -> Result<Role, String> {
     }
 }
 
-/// A rig at another machine.
 #[derive(Debug, Args)]
 pub(crate) struct Which {
-    /// Its name, if several are shared in the local network
+    /// Name of the rig, if several are shared on the local network
     pub(crate) rig: Option<String>,
-    /// Its address; without one it is looked for in the local network
+    /// Address of the rig (default: search the local network)
     #[arg(long, value_name = "HOST[:PORT]")]
     pub(crate) at: Option<String>,
 }

@@ -1,5 +1,4 @@
-//! `nima devices`: lists connected devices; tests the requested ones and prints why a device does not work and what to
-//! do.
+//! `nima devices`: lists connected devices, tests the requested ones, and prints cause and remedy of each problem.
 
 use std::fmt::Write as _;
 
@@ -16,8 +15,8 @@ use super::output;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A device to test; may be given several times: `spacemouse`, `pedal`, `force-dimension`, `haply`, `kinova`, `ndi`, `dynamixel`, `bota-gen0`,
-    /// `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
+    /// Test this device; may be repeated: `spacemouse`, `pedal`, `force-dimension`, `haply`, `kinova`, `ndi`, `dynamixel`,
+    /// `bota-gen0`, `bota-gen-a`, `bota-socket`, `external-handle`, `external-arm`, `external-sensor`, each with `=PLACE`;
     /// `serial=PORT@BAUD[,HEADER][,quiet]`, `tcp=HOST:PORT`
     #[arg(long, value_name = "KIND[=PLACE]")]
     probe: Vec<String>,
@@ -27,7 +26,7 @@ pub(super) struct Arguments {
     /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
-    /// Print the command that gives you access to the devices without root
+    /// Print the command that grants access to the devices without root
     #[arg(long, conflicts_with_all = ["json", "probe", "rig"])]
     udev: bool,
     /// Print the udev rules
@@ -42,7 +41,6 @@ struct Report {
     devices: Vec<Diagnosis>,
 }
 
-/// For the endoscope's picture.
 #[derive(Serialize)]
 struct Camera {
     path: std::path::PathBuf,
@@ -84,7 +82,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let mut text = in_words(&report);
     if let Some(rig) = emulated.filter(|_| report.devices.iter().all(is_trouble)) {
-        // What each device advises is for a real one.
+        // The devices' own remedies apply to real devices.
         writeln!(
             text,
             "\nThis rig is emulated: start its devices with `nima emulate rig --rig {rig}` in another terminal"
@@ -95,12 +93,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     end(&report)
 }
 
-/// An error if a device has a problem: whoever asks from a script must learn of it.
+/// Returns an error if a device has a problem, so that scripts detect it.
 fn end(report: &Report) -> anyhow::Result<()> {
     let troubled = report.devices.iter().filter(|device| is_trouble(device)).count();
     let all = report.devices.len();
     if troubled > 0 {
-        bail!("{troubled} of {all} devices cannot be used; the cause and what to do stand beside each");
+        bail!("{troubled} of {all} devices cannot be used; cause and remedy are given for each");
     }
     Ok(())
 }
@@ -127,7 +125,7 @@ fn in_words(report: &Report) -> String {
         cameras.iter().map(|camera| [camera.path.display().to_string(), "camera".to_owned(), camera.name.clone()]),
     );
     if rows.is_empty() {
-        text.push_str("  no device that this program can use\n");
+        text.push_str("  no usable device found\n");
     }
     table(&mut text, &rows);
     text.push_str("\nTested\n");
@@ -135,7 +133,7 @@ fn in_words(report: &Report) -> String {
         let kinds: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
         writeln!(
             text,
-            "  nothing; --rig RIG tests all devices of a rig, --probe KIND[=PLACE] one of: {}",
+            "  nothing requested; --rig RIG tests all devices of a rig, --probe KIND[=PLACE] one of: {}",
             kinds.join(", ")
         )
         .ok();

@@ -1,4 +1,4 @@
-//! Whether a run did what it was started for, and if not, why.
+//! Outcome of a run, with the reason if it did not do its task.
 
 use nima_core::safety::Why;
 use nima_devices::Standing;
@@ -10,7 +10,6 @@ use nima_machine::{
 
 use crate::words::{cure_of_refusal, refused_because};
 
-/// Reasons why arms were not engaged, as reported by the loop.
 #[derive(Debug, Default)]
 pub(super) struct Reasons {
     refusals: [Option<Refusal>; SIDES],
@@ -18,7 +17,6 @@ pub(super) struct Reasons {
 }
 
 impl Reasons {
-    /// Adds a tick.
     pub(super) fn watch(&mut self, tick: &Tick) {
         self.was_engaged[tick.side.index()] |= tick.state == LoopState::Engaged;
     }
@@ -50,8 +48,7 @@ impl Reasons {
         }
     }
 
-    /// Why the run did not do what it was started for; `None` if it did. `engages`: the rig was to engage
-    /// automatically.
+    /// Reason why the run did not do its task; `None` if it did. `engages`: the rig was to engage automatically.
     pub(super) fn of(&self, summary: &Summary, engages: bool) -> Option<String> {
         summary.arms.iter().find_map(|arm| self.of_arm(arm, summary, engages))
     }
@@ -78,22 +75,22 @@ impl Reasons {
                     cure_of_refusal(why)
                 ),
                 None if self.was_engaged[arm.side.index()] => {
-                    format!("the {side} arm was no longer engaged when the run ended")
+                    format!("the {side} arm was no longer engaged at the end of the run")
                 }
-                None => format!("the {side} arm was not yet engaged when the run ended: give it more --seconds"),
+                None => format!("the {side} arm was not yet engaged at the end of the run: increase --seconds"),
             }),
         }
     }
 }
 
-/// The first missing device of this arm, why it is missing, and what to do.
+/// The first missing device of this arm, with cause and remedy.
 fn missing(side: Side, summary: &Summary) -> String {
     let absent = || summary.devices.iter().filter(|device| device.health.standing != Standing::Connected);
     let first = absent().find(|device| device.name.starts_with(side.word())).or_else(|| absent().next());
-    let Some(device) = first else { return "its devices send nothing new; see them with `nima devices`".to_owned() };
+    let Some(device) = first else { return "its devices send no new data; test them with `nima devices`".to_owned() };
     match (&device.trouble, device.health.standing) {
         (Some(trouble), _) => format!("{}: {}. {}", device.name, trouble.cause, trouble.cure),
-        (None, Standing::Lost(loss)) => format!("{}: {}; it is opened again by itself", device.name, loss.cause()),
-        (None, _) => format!("{} was still being opened; give it more --seconds", device.name),
+        (None, Standing::Lost(loss)) => format!("{}: {}; it reconnects automatically", device.name, loss.cause()),
+        (None, _) => format!("{} was still being opened; increase --seconds", device.name),
     }
 }

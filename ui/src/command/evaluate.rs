@@ -1,4 +1,4 @@
-//! `nima evaluate`: judges models on data they were not trained on.
+//! `nima evaluate`: evaluates models on data that were not used for training.
 
 use std::{
     fmt::Write as _,
@@ -26,8 +26,8 @@ pub(super) struct TipForce {
     /// CSV files with the model's columns; not the files used for training
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
-    /// Write predictions.csv, regression.svg and, where `contact` is a column, no-contact.svg into this folder (made if absent; replaces
-    /// files, whose mode stays; follows links; refuses inputs, devices and pipes)
+    /// Write predictions.csv, regression.svg and, if `contact` is a column, no-contact.svg into this folder (created if
+    /// missing; replaces existing files and keeps their permissions; follows links; rejects input files, devices and pipes)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the results as one JSON object
@@ -35,14 +35,12 @@ pub(super) struct TipForce {
     json: bool,
 }
 
-/// Names of the files that are written.
 const FILES: [&str; 3] = [PREDICTIONS, REGRESSION, NO_CONTACT];
 const PREDICTIONS: &str = "predictions.csv";
 const REGRESSION: &str = "regression.svg";
 const NO_CONTACT: &str = "no-contact.svg";
-/// Points of a regression plot; more are thinned evenly.
+/// Maximum number of points in a regression plot; more points are thinned evenly.
 const POINTS: usize = 1500;
-/// Bars of the histogram.
 const BARS: usize = 40;
 
 pub(super) fn run(command: &EvaluateCommand) -> anyhow::Result<()> {
@@ -64,7 +62,7 @@ pub(super) fn run(command: &EvaluateCommand) -> anyhow::Result<()> {
     if arguments.json { output::json(&figures) } else { output::line(in_words(&figures).trim_end()) }
 }
 
-/// Writing into a String cannot fail, here and below.
+/// Writing to a String cannot fail, here and below.
 fn predictions(figures: &Evaluation, data: &DataSet) -> String {
     let outputs = figures.outputs.len();
     let mut text = String::from("file,row,in_doubt");
@@ -134,7 +132,7 @@ fn histogram(figures: &Evaluation, contact: &[bool]) -> String {
         Chart {
             title: format!("{} without contact", figures.outputs[k]),
             x: Axis::linear("predicted", -reach, reach),
-            y: Axis::linear("share of rows", 0.0, top),
+            y: Axis::linear("fraction of rows", 0.0, top),
             series: vec![Series { name: String::new(), colour: 4, style: Style::Line, points }],
         }
     };
@@ -145,7 +143,7 @@ fn in_words(figures: &Evaluation) -> String {
     let mut text = String::new();
     if !figures.trained_on.is_empty() {
         let files = figures.trained_on.join(", ");
-        writeln!(text, "THE MODEL WAS TRAINED ON {files}: these results say nothing about new data").ok();
+        writeln!(text, "THE MODEL WAS TRAINED ON {files}: these results do not apply to new data").ok();
     }
     for part in figures.files.iter().chain([&figures.overall]) {
         part_in_words(part, &figures.outputs, &mut text);

@@ -1,4 +1,4 @@
-//! `nima export`: a recorded session as a table, or a stretch of it as a session of its own.
+//! `nima export`: writes a recorded session as a table, or an excerpt as a separate session.
 
 use std::{
     fmt::Write as _,
@@ -34,7 +34,7 @@ use crate::{
 const HEADER: &str = "t_s,time_ns,x_m,y_m,z_m,fx_n,fy_n,fz_n,leader_x_m,leader_y_m,leader_z_m,\
 delayed_x_n,delayed_y_n,delayed_z_n,asked_x_n,asked_y_n,asked_z_n,rendered_x_n,rendered_y_n,rendered_z_n,state";
 
-/// Extensions of the layouts for viewers, and the attachments that they are.
+/// Extensions of viewer layouts, and the names of their attachments.
 const LAYOUTS: [(&str, &str); 2] = [("json", layouts::FOXGLOVE), ("xml", layouts::PLOTJUGGLER)];
 
 #[derive(Debug, Args)]
@@ -47,10 +47,10 @@ pub(super) struct Arguments {
     out: PathBuf,
     #[command(flatten)]
     stretch: Stretch,
-    /// Which arm comes into the table, right or left (needed if the session has both)
+    /// Arm to write into the table, right or left (required if the session has both)
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
-    /// Leave out what tells who recorded it, where and when (.mcap only)
+    /// Remove person, place and time of the recording (.mcap only)
     #[arg(long)]
     anonymous: bool,
 }
@@ -60,19 +60,21 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let is = |extension: &str| out.extension().is_some_and(|one| one.eq_ignore_ascii_case(extension));
     let layout = LAYOUTS.iter().find(|(extension, _)| is(extension)).map(|(_, name)| *name);
     if !is("csv") && !is("mcap") && layout.is_none() {
-        bail!("--out {}: give a name that ends in .csv, .mcap, .json or .xml", out.display());
+        bail!("--out {}: the name must end in .csv, .mcap, .json or .xml", out.display());
     }
     if layout.is_some() && (arm.is_some() || *anonymous || arguments.stretch.is_asked()) {
-        bail!("a layout is the same for the whole session: leave out --arm, --anonymous, --from and --to");
+        bail!("a layout applies to the whole session: omit --arm, --anonymous, --from and --to");
     }
     if is("mcap") && arm.is_some() {
-        bail!("--arm is for tables: a session that is cut out keeps both arms");
+        bail!("--arm applies only to tables: omit it, an exported session keeps both arms");
     }
     if is("csv") && *anonymous {
-        bail!("--anonymous is for a session (.mcap); a table of an anonymous session is anonymous too");
+        bail!(
+            "--anonymous applies only to sessions (.mcap): omit it, a table of an anonymous session is anonymous too"
+        );
     }
     if out.symlink_metadata().is_ok() {
-        bail!("cannot write {}: it is there already; choose another name", out.display());
+        bail!("cannot write {}: it already exists; choose another name", out.display());
     }
     output::check(out, &[session])?;
     let reader = Reader::open(session)?;
@@ -83,7 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return laid_out(&reader, session, name, out);
     }
     let times_ns = times_ns(&reader, arguments)?;
-    // Whatever is half-written goes away before the end.
+    // Removes half-written files before the program ends.
     let leave = Leave::on_signals()?;
     if is("csv") {
         return table(&reader, times_ns, arguments, &leave);
@@ -96,12 +98,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     output::line(&format!("{} in {}, {}", words.0, out.display(), words.1))
 }
 
-/// Writes an attached layout into a file of its own, which viewers import.
+/// Writes an attached layout into a separate file for viewers to import.
 fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::Result<()> {
     let attachment = reader.attachments().iter().find(|attachment| attachment.name == name);
     let attachment = attachment.with_context(|| {
         format!(
-            "session {} has no {name}: an older program recorded it; take the layout of a newer session",
+            "session {} has no {name}: an older program recorded it; use the layout of a newer session",
             session.display()
         )
     })?;
@@ -110,16 +112,15 @@ fn laid_out(reader: &Reader, session: &Path, name: &str, out: &Path) -> anyhow::
     output::line(&format!("{name} in {}: import it as a layout", out.display()))
 }
 
-/// The times that were asked for, ns.
+/// The requested times, ns.
 fn times_ns(reader: &Reader, Arguments { session, stretch, .. }: &Arguments) -> anyhow::Result<Range<u64>> {
     let Range { start, end } = stretch.of(session, reader)?;
     let begin_ns = plotted::beginning_ns(reader)?;
     let time_ns = |seconds: f64| begin_ns.saturating_add((seconds * 1e9).round() as u64);
-    // What was written before the first tick belongs to it.
+    // Entries before the first tick belong to it.
     Ok(if start > 0.0 { time_ns(start) } else { 0 }..time_ns(end))
 }
 
-/// Why a table was not finished.
 enum Failed {
     Session(PlottedError),
     File(io::Error),
@@ -147,9 +148,11 @@ fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &L
         });
         match filled {
             Err(Failed::File(error)) => Err(error),
-            // Half a table is none.
+            // An incomplete table is an error.
             Err(Failed::Session(error)) => Err(io::Error::other(trouble.insert(error).to_string())),
-            Ok(()) if rows == 0 => Err(io::Error::other("the session has no tick in this stretch")),
+            Ok(()) if rows == 0 => {
+                Err(io::Error::other("the session has no tick in this excerpt; change --from or --to"))
+            }
             Ok(()) => Ok(()),
         }
     });
@@ -160,7 +163,7 @@ fn table(reader: &Reader, times_ns: Range<u64>, arguments: &Arguments, leave: &L
     output::line(&format!("{rows} ticks of the {} arm in {}", arm.word(), out.display()))
 }
 
-/// The fewest digits from which the same numbers are read; nothing in the place of one that is not known.
+/// Fewest digits that read back as the same numbers; empty for an unknown number.
 fn row(tick: &PlottedTick) -> String {
     let PlottedTick { time_ns, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = tick;
     let mut row = format!("{t_s},{time_ns}");
@@ -171,10 +174,10 @@ fn row(tick: &PlottedTick) -> String {
     row
 }
 
-/// What was written, and what is to be said of it.
+/// Written content, and a remark about it.
 type Told = (String, &'static str);
 
-/// In a folder beside the file first, so that nothing half-written has its name.
+/// Writes to a temporary folder next to the file first, so that no half-written file has its name.
 fn whole(out: &Path, write: impl FnOnce(&Path) -> anyhow::Result<Told>) -> anyhow::Result<Told> {
     let failed = || format!("cannot write {}", out.display());
     let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
@@ -189,8 +192,8 @@ fn cut_out(reader: &Reader, times_ns: &Range<u64>, session: &Path, new: &Path, l
     let name = session.file_name().unwrap_or_default().to_string_lossy();
     let Cut { messages, journal } = cut::write(reader, &name, times_ns, new, leave.flag())?;
     let journal = match journal {
-        Kept::Yes => "with the journal up to the cut: `nima replay` repeats it",
-        Kept::LeftOut => "without the journal, which can be replayed from its beginning only",
+        Kept::Yes => "with the journal up to the cut: `nima replay` can replay it",
+        Kept::LeftOut => "without the journal, which can be replayed only from its start",
         Kept::None => "the session has no journal",
     };
     Ok((format!("{messages} messages"), journal))
@@ -200,10 +203,10 @@ fn anonymously(reader: &Reader, times_ns: &Range<u64>, new: &Path, leave: &Leave
     let (files, devices) = files(reader)?;
     let known = Known { program: PROGRAM, files: &files, words: WORDS, devices: &devices };
     let messages = anonymous::write(reader, &known, times_ns, new, leave.flag())?;
-    Ok((format!("{messages} messages"), "anonymous, without the journal: see what remains in docs/sessions.md"))
+    Ok((format!("{messages} messages"), "anonymous, without the journal: docs/sessions.md lists the remaining data"))
 }
 
-/// Rig and scene of the session without their names, and the rig's devices; one that this program cannot read is left out.
+/// Rig and scene of the session without their names, and the rig's devices. A file that this program cannot read is left out.
 fn files(reader: &Reader) -> anyhow::Result<(Vec<Attached>, Vec<DeviceName>)> {
     let mut files = Vec::new();
     let mut devices = Vec::new();

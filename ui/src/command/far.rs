@@ -1,4 +1,4 @@
-//! The option of a command whose arm may be at another machine.
+//! Option of a command whose arm may be at another machine.
 
 use clap::Args;
 use nima_machine::config::RigConfig;
@@ -10,23 +10,21 @@ use crate::{
     link::Line,
 };
 
-/// Where the arm is.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct ToFollower {
-    /// The arm and its sensor are at this machine, where `nima follower` runs; here are the handle and the screen
+    /// Use the arm and sensor at this machine, where `nima follower` runs; handle and screen are here
     #[arg(long, value_name = "HOST[:PORT]")]
     follower: Option<String>,
 }
 
 impl ToFollower {
-    /// Where the arm is.
     pub(super) fn arm(&self) -> Arm {
         let Some(host) = &self.follower else { return Arm::Here };
         let is_loopback = extras::part(Extra::way).is_some_and(|way| way.is_loopback(host));
         if is_loopback { Arm::Loopback } else { Arm::Elsewhere }
     }
 
-    /// Opens the line, if one is asked for; changes the rig to what is here.
+    /// Opens the link, if requested; reduces the rig to the parts at this machine.
     pub(super) fn open(&self, rig: &mut RigConfig, scene: &Scene) -> anyhow::Result<Option<Box<dyn Line>>> {
         let Some(host) = &self.follower else { return Ok(None) };
         let way = extras::part(Extra::way).ok_or_else(|| extras::not_built("`--follower`", "two-machines"))?;

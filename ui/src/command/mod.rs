@@ -1,4 +1,5 @@
-//! The command line of `nima`: one file per subcommand. Failure is one clear line on stderr and a non-zero exit.
+//! The command line of `nima`: one file per subcommand. A failure prints one clear line on stderr and exits with a non-zero
+//! status.
 
 mod calibrate;
 mod check;
@@ -35,7 +36,7 @@ use crate::{
     telling::tell,
 };
 
-/// Exit code for "no window can be opened" (`EX_UNAVAILABLE`): the start script falls back to `nima run` on it.
+/// Exit code if no window can be opened (`EX_UNAVAILABLE`): the start script then runs `nima run`.
 const NO_WINDOW: u8 = 69;
 
 /// Operator console for haptic teleoperation in laparoscopy. Research software, not for clinical use.
@@ -51,27 +52,27 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Open the console (also what plain `nima` does)
+    /// Open the console (also the default without a command)
     Console(console::Arguments),
-    /// Run the same control loop without a window, then print its timing and errors
+    /// Run the control loop without a window, then print its timing and errors
     Run(run::Arguments),
-    /// Replay a recorded session through the same loop and compare every tick, or change one thing in it
+    /// Replay a recorded session through the same loop and compare every tick, or change one setting
     Replay(replay::Arguments),
-    /// Write a recorded session as a table, or a stretch of it as a session of its own
+    /// Write a recorded session as a table, or an excerpt as a separate session
     Export(export::Arguments),
-    /// List the sessions that the console recorded, keep one or delete one
+    /// List, keep or delete recorded sessions
     Sessions(sessions::Arguments),
-    /// Write a page that tells what happened in recorded sessions, when, and what went wrong
+    /// Write a report page about recorded sessions: events, times and problems
     Report(report::Arguments),
-    /// Rigs of a department: certificates, which are shared, watch and record them from other machines
+    /// Manage the rigs of a department: certificates, shared rigs, remote viewing and recording
     #[command(subcommand, arg_required_else_help = false)]
     Department(department::DepartmentCommand),
-    /// List connected devices and test them; for each failure, print its cause and what to do
+    /// List connected devices and test them; print cause and remedy of each problem
     Devices(devices::Arguments),
-    /// Calibrate from a file, or a whole emulated rig; prints errors on held-out data and a verdict
+    /// Calibrate from a file, or calibrate a whole emulated rig; print held-out errors and a verdict
     #[command(subcommand, arg_required_else_help = false)]
     Calibrate(calibrate::CalibrateCommand),
-    /// Check whether a rig is ready for the day; keeps a record, and fails if it is not
+    /// Check whether a rig is ready for the day; save a record, and fail if it is not ready
     #[command(subcommand, arg_required_else_help = false)]
     Check(check::CheckCommand),
     /// Train models from data
@@ -80,13 +81,13 @@ enum Command {
     /// Evaluate models on data that were not used for training
     #[command(subcommand, arg_required_else_help = false)]
     Evaluate(evaluate::EvaluateCommand),
-    /// Print the script by which a shell completes the commands and options of `nima`
+    /// Print the shell script that completes the commands and options of `nima`
     Completions(shells::CompletionsArguments),
-    /// Write the manual pages of every command into a folder
+    /// Write the manual pages of all commands into a folder
     Man(shells::ManArguments),
 }
 
-/// The command line with what this build adds to it.
+/// The command line, with the commands of this build's extras.
 fn command_line() -> clap::Command {
     extras::commands(Cli::command())
 }
@@ -107,7 +108,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// Folds any text of files and devices into one line of bounded length.
+/// Folds text from files and devices into one line of limited length.
 fn one_line(text: &str) -> String {
     const MOST: usize = 2000;
     shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "), MOST)
@@ -127,11 +128,12 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // One line: the chain of causes joined, line breaks in foreign messages folded.
+            // One line: the chain of causes is joined, line breaks in foreign messages are folded.
             let line = one_line(&format!("{error:#}"));
             if error.is::<crate::console::NoWindow>() {
                 tell(format_args!(
-                    "nima: no window can be opened ({line}); start it on a desktop, or use `nima run` in this terminal"
+                    "nima: cannot open a window ({line}); start nima on a desktop, or use `nima run` in this \
+                     terminal"
                 ));
                 return ExitCode::from(NO_WINDOW);
             }

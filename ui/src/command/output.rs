@@ -1,5 +1,3 @@
-//! Output of the commands.
-
 use std::{
     io::{self, Write as _},
     path::Path,
@@ -21,23 +19,22 @@ pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// A number as a field of a table, behind its comma; empty for one that is not known.
+/// Number as a table field, after its comma; empty for an unknown number.
 pub(crate) fn cell(number: f64) -> String {
     if number.is_finite() { format!(",{number}") } else { ",".to_owned() }
 }
 
-/// Checks before the work that `out` can be written and is not one of the input files.
+/// Checks, before the work starts, that `out` can be written and is not an input file.
 pub(crate) fn check(out: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     nima_files::check_output(out, inputs).with_context(|| format!("cannot write {}", out.display()))
 }
 
-/// Creates the folder for results if necessary, and checks that files of these names can be written into it.
+/// Creates the results folder if necessary, and checks that files of these names can be written into it.
 pub(crate) fn folder(out: &Path, names: &[&str], inputs: &[&Path]) -> anyhow::Result<()> {
     std::fs::create_dir_all(out).with_context(|| format!("cannot create the folder {}", out.display()))?;
     names.iter().try_for_each(|name| check(&out.join(name), inputs))
 }
 
-/// Writes one result into its folder.
 pub(crate) fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
     let path = folder.join(name);
     nima_files::write_atomically(&path, |file| file.write_all(text.as_bytes()))

@@ -1,4 +1,4 @@
-//! `nima replay`: a recorded session once more through the same loop.
+//! `nima replay`: runs a recorded session again through the same loop.
 
 mod what_if;
 
@@ -25,7 +25,7 @@ use crate::{recording::PROGRAM, telling::tell};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Session file that `nima run --record` wrote
+    /// Session file written by `nima run --record` or the console
     session: PathBuf,
     #[command(flatten)]
     stretch: Stretch,
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     delay_ms: Option<f64>,
     #[arg(long, value_name = "G", value_parser = gain, allow_negative_numbers = true, help = format!("What if: this feedback gain, {GAIN}"))]
     gain: Option<f64>,
-    /// Write the forces of both, tick by tick, into this folder (with a change only)
+    /// Write the forces of both, tick by tick, into this folder (only with a change)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the results as one JSON object
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { session, stretch, mode, delay_ms, gain, out, json } = arguments;
     let change = Change { mode: *mode, delay_s: delay_ms.map(|delay_ms| delay_ms * 1e-3), gain: *gain };
     if !change.is_any() && out.is_some() {
-        bail!("--out needs a change: give --mode, --delay-ms or --gain too");
+        bail!("--out requires a change: add --mode, --delay-ms or --gain");
     }
     let file = Recorded::open(session)?;
     for note in file.reader().notes() {
@@ -76,17 +76,16 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     once_more(journal(), session, &stretch_s, *json)
 }
 
-/// The journal from its beginning, or why there is none.
+/// The journal from its start, or the reason why it is missing.
 type Opened = Result<Journal<Messages>, ReplayError>;
 
-/// What a replay tells.
 #[derive(Serialize)]
 struct Told<'a> {
     session: &'a Path,
     recorded_by: &'a str,
     rig: &'a str,
     ticks: u64,
-    /// Replayed, and not compared.
+    /// Ticks that were replayed but not compared.
     ticks_before: u64,
     seconds: f64,
     times_real_time: f64,
@@ -118,7 +117,7 @@ fn once_more(journal: Opened, session: &Path, stretch_s: &Range<f64>, json: bool
     let begin = Instant::now();
     let mut read = 0;
     let outcome = verify(journal, stretch_s, |ticks| read = ticks);
-    let outcome = outcome.with_context(|| format!("{} ({read} ticks before were replayed)", session.display()))?;
+    let outcome = outcome.with_context(|| format!("{} ({read} ticks before it were replayed)", session.display()))?;
     let took_s = begin.elapsed().as_secs_f64();
     let Outcome { ticks, before, seconds, differs, hole, closed } = outcome;
     let different = differs.map(|Differs { tick, t_s, place }| Different {
@@ -161,16 +160,18 @@ fn in_words(told: &Told<'_>, stretch_s: &Range<f64>) -> String {
     );
     if *ticks_before > 0 {
         let words = format!(
-            "\nthe {ticks_before} ticks before were replayed too, because each depends on all before it, and not compared"
+            "\nthe {ticks_before} ticks before it were replayed but not compared, because each tick depends on \
+             all earlier ones"
         );
         text.push_str(&words);
     }
     if differs.is_none() && *ticks > 0 {
-        text.push_str("\nevery one is as it was recorded, to the last bit");
+        text.push_str("\nall ticks match the recording bit by bit");
     }
     if let Some(Missing { after_tick, lost }) = hole {
         let words = format!(
-            "\nafter tick {after_tick} the recording lost {lost} entries: from there on nothing can be replayed, and nothing was compared"
+            "\nafter tick {after_tick} the recording lost {lost} entries: later ticks cannot be replayed and \
+             were not compared"
         );
         text.push_str(&words);
     } else if !closed && differs.is_none() && stretch_s.end.is_infinite() {
@@ -179,13 +180,14 @@ fn in_words(told: &Told<'_>, stretch_s: &Range<f64>) -> String {
     text
 }
 
-/// The first tick that differs, in words.
+/// Text of the first tick that differs.
 fn difference(Different { tick, t_s, side, stage }: &Different, recorded_by: &str) -> String {
     let whose = side.map_or_else(String::new, |side| format!(" of the {side} arm"));
     let versions = if recorded_by == PROGRAM {
-        "the same version of the program recorded it: the file was changed, or this build computes otherwise".to_owned()
+        "the same version of the program recorded it: the file was changed, or this build computes differently"
+            .to_owned()
     } else {
         format!("{recorded_by} recorded it, this is {PROGRAM}")
     };
-    format!("tick {tick} at {t_s:.3} s is not as it was recorded, first in its {stage}{whose}; {versions}")
+    format!("tick {tick} at {t_s:.3} s differs from the recording, first in its {stage}{whose}; {versions}")
 }

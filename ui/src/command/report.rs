@@ -1,4 +1,4 @@
-//! `nima report`: a page that tells what happened in a session, or compares several.
+//! `nima report`: writes a page about one session, or compares several.
 
 use std::path::PathBuf;
 
@@ -9,14 +9,14 @@ use crate::{report, telling::tell};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Session files that `nima run --record` or the console wrote; several are compared
+    /// Session files written by `nima run --record` or the console; several are compared
     #[arg(required = true, value_name = "SESSION.mcap")]
     sessions: Vec<PathBuf>,
-    /// Write report.html into this folder (made if absent; replaces the file, whose mode stays; follows links; refuses inputs, devices and
-    /// pipes)
+    /// Write report.html into this folder (created if missing; replaces the file and keeps its permissions; follows links;
+    /// rejects input files, devices and pipes)
     #[arg(long, value_name = "DIR", required_unless_present = "json")]
     out: Option<PathBuf>,
-    /// Print the figures as one JSON object
+    /// Print the results as one JSON object
     #[arg(long)]
     json: bool,
 }

@@ -1,4 +1,4 @@
-//! `nima run`: the loop without a window, with a live status line and figures at the end.
+//! `nima run`: the loop without a window, with a live status line and results at the end.
 
 mod engaging;
 mod record;
@@ -49,7 +49,7 @@ use crate::{
     words::{Remedy as _, drift as drift_in_words},
 };
 
-/// True forces at the tips that emulators tell in a second.
+/// Reports of the true tip forces per second.
 const TRUTH_HZ: u32 = 200;
 
 #[derive(Debug, Default, Args)]
@@ -70,10 +70,10 @@ pub(crate) struct Arguments {
     /// Let the force on each axis depend on the motion of all axes (matched and best; slower)
     #[arg(long)]
     pub(crate) cross_talk: bool,
-    /// Compute every mode and compare their errors (default: only the mode that is rendered, beside delayed reflection)
+    /// Compute every mode and compare their errors (default: only the rendered mode and delayed reflection)
     #[arg(long)]
     pub(crate) compare: bool,
-    /// Run on a virtual clock, as fast as this computer can
+    /// Run on a virtual clock, as fast as possible
     #[arg(long = "virtual", conflicts_with_all = ["live", "share", "igtl", "lsl", "follower"])]
     pub(crate) virtual_clock: bool,
     #[command(flatten)]
@@ -81,7 +81,7 @@ pub(crate) struct Arguments {
     /// Scheduling class to request for the loop: ordinary, fifo or deadline (default: the rig's)
     #[arg(long, value_name = "CLASS")]
     pub(crate) scheduling: Option<SchedulingClass>,
-    /// Record the session into a new file, from which `nima replay` repeats it bit for bit
+    /// Record the session into a new file, which `nima replay` repeats bit by bit
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
     #[command(flatten)]
@@ -93,11 +93,10 @@ pub(crate) struct Arguments {
     pub(crate) json: bool,
 }
 
-/// Late ticks of the virtual clock.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Late {
-    /// When the ticks of the virtual clock wake: perfect, quiet or busy (as recorded on such a computer), late-PERCENT (this fraction is
-    /// 0.5 to 4 ms late), stall-MS (a pause about once a second)
+    /// Wake-up times of the virtual clock: perfect, quiet or busy (recorded on such a computer), late-PERCENT (this
+    /// percentage of ticks is 0.5 to 4 ms late), stall-MS (a pause about once per second)
     #[arg(long, value_name = "NAME", default_value_t, requires = "virtual_clock")]
     clock: ClockProfile,
     /// Seed of the late ticks
@@ -106,7 +105,7 @@ pub(crate) struct Late {
 }
 
 impl Arguments {
-    /// The clock, unless it is the real one.
+    /// The virtual clock; `None` for the real clock.
     fn virtual_clock(&self) -> Option<VirtualClock> {
         let Late { clock: profile, clock_seed: seed } = self.late;
         self.virtual_clock.then_some(VirtualClock { profile, seed })
@@ -117,7 +116,7 @@ impl Arguments {
 pub(crate) fn positive_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 1e7 => Ok(seconds),
-        _ => Err("give a number of seconds above 0".to_owned()),
+        _ => Err("enter a number of seconds above 0".to_owned()),
     }
 }
 
@@ -125,7 +124,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     run_with(arguments, |rig, scene| arguments.network.open(rig, scene))
 }
 
-/// The same with the line to another machine that `open` gives, which changes the rig to what is at this one.
+/// Like [`run`], with the link that `open` returns; `open` reduces the rig to the parts at this machine.
 pub(crate) fn run_with(
     arguments: &Arguments,
     open: impl FnOnce(&mut RigConfig, &Scene) -> anyhow::Result<Option<Box<dyn Line>>>,
@@ -138,12 +137,12 @@ pub(crate) fn run_with(
     rig.scheduling = arguments.scheduling.unwrap_or(rig.scheduling);
     rig.validate()?;
     if arguments.virtual_clock && !rig.has_simulated_hand() {
-        bail!("rig \"{}\" has devices, which need the real clock: remove --virtual", rig.name);
+        bail!("rig \"{}\" has devices, which need the real clock: omit --virtual", rig.name);
     }
     let line = open(&mut rig, &scene)?;
     let here = line.as_ref().map_or(Ends::Both, |line| line.here());
     let leave = arguments.setup.leave()?;
-    // The emulators of the whole rig are the follower's.
+    // The follower runs the emulators of the whole rig.
     let emulated = rig.devices.as_ref().filter(|_| here.have_follower());
     let emulators = Emulators::start(arguments.setup.rig(), arguments.setup.scene(), emulated)?;
     if let Some(emulators) = &emulators {
@@ -151,11 +150,12 @@ pub(crate) fn run_with(
     }
     let mut in_force = InForce::load(None, &rig, &scene);
     let calibrations = in_force.calibrations(&rig);
-    // With a calibrated wrist sensor the bias is checked before the tool may touch anything.
+    // With a calibrated wrist sensor, the bias is checked before the tool may touch anything.
     let arm = arguments.network.arm();
     if arm == Arm::Elsewhere {
         tell(
-            "the arm at another machine may be a real one: it stays idle; engage it in `nima console --follower HOST`",
+            "the arm at another machine may be real, so it stays idle: engage it in `nima console --follower \
+             HOST`",
         );
     }
     let by_itself = by_itself::engages(Starter::Run, arguments.setup.rig(), &rig, arm);
@@ -175,7 +175,8 @@ pub(crate) fn run_with(
     };
     if !plan.may_engage() {
         bail!(
-            "scene \"{}\" cannot be engaged: the force at its tip is not known; calibrate with `nima console --calibrate gravity`",
+            "scene \"{}\" cannot be engaged: the force at its tip is unknown; calibrate with `nima console \
+             --calibrate gravity`",
             plan.scene.name
         );
     }
@@ -221,12 +222,12 @@ pub(crate) fn run_with(
         output::line(&(in_words(&plan, &summary, is_measured) + &tip_error + &bias + &link + &kept))?;
     }
     recorded?;
-    // Without its calibrations an emulated rig does what it can, and has said what it lacks.
+    // Without its calibrations an emulated rig does what it can, and has reported what is missing.
     let was_to_engage = by_itself && start.in_force.uncalibrated().is_none();
     start.reasons.of(&summary, was_to_engage).map_or(Ok(()), |why| Err(anyhow::anyhow!(why)))
 }
 
-/// The figures of a run; the truth only where the rig knows it.
+/// Results of a run; ground truth only from emulated rigs.
 #[derive(Serialize)]
 struct Told<'a> {
     #[serde(flatten)]
@@ -241,24 +242,24 @@ struct Told<'a> {
     score: Option<Value>,
 }
 
-/// Engages after the bias of the wrist sensor has been checked, whatever the result.
+/// Engages after the check of the wrist sensor's bias, whatever its result.
 struct Start {
     in_force: InForce,
     engaging: Engaging,
     reasons: Reasons,
     emulators: Option<Emulators>,
-    /// Of forces with the true ones, in a build with emulators.
+    /// Compares forces with the true forces, in a build with emulators.
     comparison: Option<Box<dyn Comparison>>,
-    /// What was told to be missing.
+    /// The missing calibration that was last reported.
     lacking: Option<String>,
-    /// To the machine with the other half of the rig.
+    /// Link to the machine with the other half of the rig.
     line: Option<Box<dyn LineDoor>>,
-    /// In a scene with a task.
+    /// Only in a scene with a task.
     scorer: Option<Box<dyn Scorer>>,
 }
 
 impl Start {
-    /// Objects are told to the recording, and to the score if there is a task.
+    /// Reports objects to the recording, and to the score if there is a task.
     fn watch_objects(
         &mut self,
         plan: &Plan,
@@ -281,14 +282,14 @@ impl Start {
         self.engaging.asks(ready, tick.t_s).then_some(Command::Engage)
     }
 
-    /// Compares the forces at the tips with the true ones, where they are known.
+    /// Compares the tip forces with the true forces, if known.
     fn compare(&mut self) {
         if let (Some(emulators), Some(comparison)) = (&self.emulators, &mut self.comparison) {
             comparison.hear(&mut emulators.told());
         }
     }
 
-    /// What is missing on an emulated rig, with its cure, if it has not been told yet.
+    /// Missing calibration of an emulated rig with its remedy, if it has not been reported yet.
     fn newly_lacking(&mut self, rig: &str) -> Option<String> {
         self.emulators.as_ref().filter(|_| !self.in_force.is_waiting())?;
         let lacking = self.in_force.lacking();
@@ -301,7 +302,7 @@ impl Start {
             None => "the force contains the trocar's friction",
         };
         let told = format!("not calibrated ({effect}): {words}; calibrate with `nima calibrate rig --rig {rig}`");
-        // A sensor or tool in another's place.
+        // A sensor or tool in another sensor's place.
         let told = std::iter::once(told).chain(self.in_force.told()).collect::<Vec<_>>().join(". ");
         let is_new = !words.is_empty() && self.lacking.as_ref() != Some(&told);
         is_new.then(|| self.lacking.insert(told).clone())
@@ -367,16 +368,18 @@ fn on_the_real_clock(
                 wrist.tool
             );
         }
-        // The queue of commands is empty here, so it has room for this one.
+        // The command queue is empty here, so it has room for this command.
         command.map(|command| handle.send(command));
         if let Some(tick) = newest {
             status.show(&tick, troubles.first().as_deref());
         }
     }
     status.end();
-    let summary = handle.stop_and_join().context("the real-time thread ended unexpectedly; its results are lost")?;
+    let summary = handle
+        .stop_and_join()
+        .context("the real-time thread ended unexpectedly: its results are lost; run it again")?;
     if leave.is_asked() {
-        tell("nima: ended as asked: force and drives are off");
+        tell("nima: ended on request: force and drives are off");
     }
     Ok(summary)
 }

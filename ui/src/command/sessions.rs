@@ -1,4 +1,4 @@
-//! `nima sessions`: the user's folder of sessions, and what is done with one of them.
+//! `nima sessions`: lists, keeps and deletes sessions in the user's folder.
 
 use std::{fmt::Write as _, path::PathBuf};
 
@@ -20,10 +20,10 @@ pub(super) struct Arguments {
     /// Delete this session
     #[arg(long, value_name = "NAME", group = "one")]
     delete: Option<String>,
-    /// Keep this session: it makes no room for new ones
+    /// Keep this session: it is never deleted to make room for new ones
     #[arg(long, value_name = "NAME", group = "one")]
     keep: Option<String>,
-    /// Keep this session no longer
+    /// Stop keeping this session
     #[arg(long, value_name = "NAME", group = "one")]
     unkeep: Option<String>,
     /// Print the list as one JSON object
@@ -42,14 +42,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some((name, kept)) = kept.as_ref().map(|name| (name, true)).or(unkeep.as_ref().map(|name| (name, false))) {
         let session = find(&shelf, name)?;
         keep(&session.path, kept).with_context(|| format!("cannot mark session {}", session.path.display()))?;
-        let words = if kept { "is kept" } else { "is not kept any more: it makes room for new ones" };
+        let words = if kept { "is kept" } else { "is no longer kept: it can be deleted to make room for new sessions" };
         return output::line(&format!("{} {words}", session.path.display()));
     }
     let listed = Listed::of(&shelf)?;
     if *json { output::json(&listed) } else { output::line(&listed.in_words()) }
 }
 
-/// A session by the name of its file, with or without its extension.
+/// Finds a session by its file name, with or without the extension.
 fn find(shelf: &Shelf, name: &str) -> anyhow::Result<Shelved> {
     let is_it = |session: &Shelved| {
         let path = &session.path;
@@ -57,7 +57,11 @@ fn find(shelf: &Shelf, name: &str) -> anyhow::Result<Shelved> {
     };
     let found = sessions(shelf)?.into_iter().find(is_it);
     found.with_context(|| {
-        format!("there is no session \"{}\" in {}; `nima sessions` lists them", quoted(name), shelf.folder().display())
+        format!(
+            "session \"{}\" not found in {}; `nima sessions` lists all sessions",
+            quoted(name),
+            shelf.folder().display()
+        )
     })
 }
 
@@ -82,7 +86,7 @@ struct Listed {
     folder: PathBuf,
     sessions: Vec<One>,
     bytes: u64,
-    /// Of those that nobody keeps.
+    /// Size of all sessions that are not kept.
     loose_bytes: u64,
     most_loose_bytes: u64,
 }
@@ -104,9 +108,8 @@ struct One {
 struct About {
     started: Option<String>,
     rig: Option<String>,
-    /// Length of what is in the file.
     seconds: f64,
-    /// Where a stretch begins in its session.
+    /// Start of an excerpt in its session.
     #[serde(skip_serializing_if = "Option::is_none")]
     stretch_from_s: Option<f64>,
     last_fault: Option<LastFault>,
@@ -141,7 +144,7 @@ impl Listed {
         let megabytes = |bytes: u64| bytes as f64 * 1e-6;
         write!(
             text,
-            "{} session{} in {}, {:.1} MB; those that nobody keeps take {:.1} of {:.0} MB",
+            "{} session{} in {}, {:.1} MB; sessions that are not kept use {:.1} of {:.0} MB",
             sessions.len(),
             if sessions.len() == 1 { "" } else { "s" },
             folder.display(),

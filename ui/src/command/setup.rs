@@ -20,10 +20,11 @@ pub(crate) struct Setup {
     /// Scene: built-in name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// Seed of the scene: where hidden lumps lie, tremor, noise (default: the scene's; a console draws one where lumps are hidden)
+    /// Seed of the scene: positions of hidden lumps, tremor, noise (default: the scene's seed; a console draws one if lumps
+    /// are hidden)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
-    /// End with standard input: whoever started this holds its other end
+    /// End when standard input closes: the parent process holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
 }
@@ -35,22 +36,19 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// Of this rig and scene.
     pub(super) fn of(rig: &str, scene: Option<&str>) -> Self {
         Self { rig: rig.to_owned(), scene: scene.map(str::to_owned), seed: None, until_input_ends: false }
     }
 
-    /// The name or path of the rig.
     pub(super) fn rig(&self) -> &str {
         &self.rig
     }
 
-    /// The name or path of the scene.
     pub(super) fn scene(&self) -> &str {
         self.scene.as_deref().unwrap_or_else(|| default_scene(&self.rig))
     }
 
-    /// Both, as the console remembers them: files by their whole paths.
+    /// Rig and scene as the console remembers them: files by their absolute paths.
     pub(super) fn choice(&self) -> Choice {
         let whole = |name: &str| {
             let path = std::fs::canonicalize(name).ok().filter(|path| path.is_file());
@@ -59,7 +57,7 @@ impl Setup {
         Choice { rig: whole(&self.rig), scene: whole(self.scene()) }
     }
 
-    /// Requests to end the run: signals, and the end of standard input if that was requested.
+    /// Requests to end the run: signals, and the end of standard input if requested.
     pub(super) fn leave(&self) -> anyhow::Result<Leave> {
         let leave = Leave::on_signals()?;
         if self.until_input_ends {
@@ -68,13 +66,12 @@ impl Setup {
         Ok(leave)
     }
 
-    /// Loads and checks both.
     pub(super) fn load(&self) -> Result<(RigConfig, Scene), ConfigError> {
         let rig = RigConfig::load(&self.rig)?;
         let mut scene = Scene::load(self.scene())?.mounted_at(&rig)?;
         if let Some(seed) = self.seed {
             let ranges = Ranges { kind: "scene", name: &scene.name };
-            let allowed = "left out at a rig with devices: its emulators take the scene's";
+            let allowed = "omitted for a rig with devices: its emulators use the scene's seed";
             ranges.check("--seed", seed as f64, rig.devices.is_none(), allowed)?;
             scene.seed = seed;
             scene.validate()?;
@@ -82,7 +79,7 @@ impl Setup {
         Ok((rig, scene))
     }
 
-    /// The same for a window: what a scene hides lies elsewhere each time, unless a seed was given.
+    /// Like [`Setup::load`], for a window: hidden parts of a scene change with each start, unless a seed was given.
     pub(super) fn load_for_a_trial(&self) -> Result<(RigConfig, Scene), ConfigError> {
         let (rig, scene) = self.load()?;
         let scene = if self.seed.is_none() && rig.devices.is_none() { drawn_anew(scene) } else { scene };
@@ -90,13 +87,12 @@ impl Setup {
     }
 }
 
-/// The scene of a rig, by its name or path, for which none was given.
+/// Name or path of the default scene of a rig.
 pub(crate) fn default_scene(rig: &str) -> &'static str {
-    // A rig that cannot be loaded is refused when it is.
+    // A rig that cannot be loaded is rejected later.
     RigConfig::load(rig).map_or("peg_transfer", |rig| Scene::default_for(&rig))
 }
 
-/// An arm, as it is named on the command line.
 pub(crate) fn side(word: &str) -> Result<Side, String> {
-    Side::ALL.into_iter().find(|side| side.word() == word).ok_or_else(|| "give right or left".to_owned())
+    Side::ALL.into_iter().find(|side| side.word() == word).ok_or_else(|| "enter right or left".to_owned())
 }

@@ -1,4 +1,4 @@
-//! `nima completions` and `nima man`: what a package installs beside the program, made from the definition of the command line itself.
+//! `nima completions` and `nima man`: files for packages, generated from the definition of the command line.
 
 use std::path::{Path, PathBuf};
 
@@ -12,13 +12,13 @@ const NAME: &str = "nima";
 
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArguments {
-    /// The shell that completes
+    /// Shell to complete for
     shell: Shell,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
-    /// Folder for the pages, one for each command: nima.1, nima-run.1 and so on
+    /// Folder for the pages, one per command: nima.1, nima-run.1 and so on
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
@@ -30,7 +30,7 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> anyhow::Result<()
 }
 
 pub(super) fn man(arguments: &ManArguments) -> anyhow::Result<()> {
-    // `help` repeats what the pages say.
+    // `help` only repeats the other pages.
     let mut command = command_line().disable_help_subcommand(true);
     command.build();
     std::fs::create_dir_all(&arguments.folder)
@@ -38,7 +38,7 @@ pub(super) fn man(arguments: &ManArguments) -> anyhow::Result<()> {
     pages(&arguments.folder, &command)
 }
 
-/// Writes the page of a command and those of the commands below it.
+/// Writes the pages of a command and its subcommands.
 fn pages(folder: &Path, command: &Command) -> anyhow::Result<()> {
     for below in command.get_subcommands().filter(|below| !below.is_hide_set()) {
         pages(folder, below)?;

@@ -1,4 +1,4 @@
-//! `--from` and `--to`: a stretch of a session.
+//! `--from` and `--to`: an excerpt of a session.
 
 use std::{ops::Range, path::Path};
 
@@ -9,29 +9,27 @@ use nima_session::plotted;
 
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct Stretch {
-    /// Where to begin, in seconds since the session began
+    /// Start of the excerpt, in seconds since the start of the session
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     from: Option<f64>,
-    /// Where to end; what happens at this time is left out
+    /// End of the excerpt; entries at this time are excluded
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     to: Option<f64>,
 }
 
-/// A time in a session.
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
-        _ => Err("give a number of seconds from 0".to_owned()),
+        _ => Err("enter a number of seconds, 0 or more".to_owned()),
     }
 }
 
 impl Stretch {
-    /// Whether less than the whole session was asked for.
     pub(crate) const fn is_asked(&self) -> bool {
         self.from.is_some() || self.to.is_some()
     }
 
-    /// Its times, s since the session began, after a look whether this session has them.
+    /// The times of the excerpt, s since the start of the session, checked against the session.
     pub(crate) fn of(&self, session: &Path, reader: &Reader) -> anyhow::Result<Range<f64>> {
         let Self { from, to } = self;
         let begin_ns = plotted::beginning_ns(reader)?;
@@ -42,12 +40,12 @@ impl Stretch {
         {
             bail!("--from {from} is not before --to {to}");
         }
-        let reaches = format!("session {} goes from {first_s:.3} s to {last_s:.3} s", session.display());
+        let reaches = format!("session {} lasts from {first_s:.3} s to {last_s:.3} s", session.display());
         if let Some(from) = from.filter(|from| *from > last_s) {
-            bail!("--from {from} is beyond the end: {reaches}");
+            bail!("--from {from} is after the end: {reaches}");
         }
         if let Some(to) = to.filter(|to| *to <= first_s) {
-            bail!("--to {to} is before the beginning: {reaches}");
+            bail!("--to {to} is before the start: {reaches}");
         }
         Ok(from.unwrap_or(0.0)..to.unwrap_or(f64::INFINITY))
     }

@@ -25,15 +25,18 @@ pub(super) enum TrainCommand {
 
 #[derive(Debug, Args)]
 pub(super) struct TipForce {
-    /// CSV files with named columns (see --inputs); rows with the same `trajectory` number, else all rows of a file, form one trajectory
+    /// CSV files with named columns (see --inputs); rows with the same `trajectory` number form a trajectory; without this
+    /// column, each file is one
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
-    /// Where to write the model
-    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
+    /// Model file to write (replaces an existing file and keeps its permissions; follows a link; rejects the input file, a
+    /// device or a pipe)
     #[arg(long, value_name = "MODEL.safetensors")]
     out: PathBuf,
-    /// Input columns, and inputs computed from the history of columns: `presliding:POSITION:WIDTH` separates sliding from reversals,
-    /// `midline:LOAD:POSITION:WIDTH` is a load without the friction seen at reversals [default: all existing columns of `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_200um_m,presliding_600um_m,slip_m_s`]
+    /// Input columns, and inputs computed from the history of columns: `presliding:POSITION:WIDTH` separates sliding from
+    /// reversals, `midline:LOAD:POSITION:WIDTH` is a load without the friction seen at reversals [default: all existing
+    /// columns of
+    /// `fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,qw,qx,qy,qz,insertion_m,insertion_speed_m_s,presliding_200um_m,presliding_600um_m,slip_m_s`]
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     inputs: Option<Vec<String>>,
     /// Output columns [default: `tip_fx_n,tip_fy_n,tip_fz_n`]
@@ -51,10 +54,10 @@ pub(super) struct TipForce {
     /// Maximum number of passes over the data [default: about 5000 steps]
     #[arg(long, value_name = "N")]
     epochs: Option<usize>,
-    /// Serial number of the sensor, kept in the file
+    /// Serial number of the sensor, stored in the file
     #[arg(long, value_name = "S")]
     sensor: Option<String>,
-    /// Name of the tool, kept in the file
+    /// Name of the tool, stored in the file
     #[arg(long, value_name = "T")]
     tool: Option<String>,
     /// Print the results as one JSON object
@@ -76,7 +79,7 @@ pub(super) fn run(command: &TrainCommand) -> anyhow::Result<()> {
     let selection = Selection { inputs: arguments.inputs.clone(), outputs: arguments.outputs.clone() };
     output::check(&arguments.out, &arguments.data.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let data = DataSet::read(&arguments.data, &selection).map_err(|error| match error {
-        TipForceError::NoColumn { .. } => anyhow!("{error}; name others with --inputs and --outputs"),
+        TipForceError::NoColumn { .. } => anyhow!("{error}; select other columns with --inputs and --outputs"),
         other => other.into(),
     })?;
     let settings = TrainingSettings {
@@ -117,7 +120,7 @@ fn show(bar: &ProgressBar, progress: &Progress) {
     bar.set_message(format!("network {}: held-out loss {:.4}", progress.member + 1, progress.best));
 }
 
-/// Writing into a String cannot fail.
+/// Writing to a String cannot fail.
 fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
     let origin = &model.origin;
     let losses: Vec<String> = origin.figures.iter().map(|f| format!("{:.4}", f.validation_loss)).collect();
@@ -132,7 +135,7 @@ fn in_words(model: &Model, arguments: &TipForce, seconds: f64) -> String {
     );
     if !origin.constant.is_empty() {
         let list = origin.constant.join(", ");
-        writeln!(text, "constant and therefore not used (any other value will be in doubt): {list}").ok();
+        writeln!(text, "constant and therefore not used (any other value counts as uncertain): {list}").ok();
     }
     let out = arguments.out.display();
     write!(text, "written to {out}; evaluate it on other data with `nima evaluate tip-force`").ok();

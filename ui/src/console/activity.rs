@@ -1,34 +1,34 @@
-//! Which devices are being moved, pressed or pushed right now, so that a person sees which one is which.
+//! Detects which devices are being moved, pressed or pushed, so that a person can identify them.
 //!
-//! Every number of a device's readings has its own noise, which is learnt while it rests. A device is active while one
-//! of its numbers changes by clearly more than that, and by more than what nobody does on purpose.
+//! The noise of every value in a device's readings is learned while the device is at rest. A device is active while one of
+//! its values changes by clearly more than its noise, and by more than accidental motion.
 
 use nima_machine::rig::{CHANNELS, DEVICES_MAX, Gauge, Gauges, Part, PartKind, RosterEntry, Spread, checkup::least};
 
-/// Blocks from which the noise is learnt before anything counts as a change; a block is 0.1 s.
+/// Blocks of 0.1 s from which the noise is learned before a change counts.
 const LEARNING: u32 = 4;
-/// How far the mean of a block lies from where the device rested, and how wide a block is, in standard deviations of
-/// its noise, before this counts as a change.
+/// Threshold, in standard deviations of the noise, for the distance of a block's mean from the rest position and for the
+/// width of a block.
 const APART: f64 = 4.0;
 const WIDE: f64 = 10.0;
-/// How fast place and noise are learnt at rest, and the noise of a device that never rests, per block.
+/// Learning rate of rest position and noise at rest, and of the noise of a device that never rests, per block.
 const LEARN: f64 = 0.3;
 const LEARN_MOVING: f64 = 0.02;
-/// How long a device stays lit after its last change, s.
+/// Time for which a device stays lit after its last change, s.
 const LIT_S: f64 = 0.5;
 
-/// One number of a device's readings.
+/// One value of a device's readings.
 #[derive(Clone, Copy, Debug, Default)]
 struct Usual {
     blocks: u32,
-    /// Where it rests.
+    /// Rest position.
     mean: f64,
     /// Standard deviation at rest.
     noise: f64,
 }
 
 impl Usual {
-    /// How many times the change of this block is larger than what counts as one; above 1 it is one.
+    /// Ratio of this block's change to the threshold; above 1 the change counts.
     fn follow(&mut self, block: &Spread, least: f64) -> f64 {
         if block.count == 0 {
             return 0.0;
@@ -45,7 +45,7 @@ impl Usual {
         let wide = block.extent() / (least + WIDE * self.noise);
         let change = apart.max(wide);
         if change > 1.0 {
-            // Where it is now may be where it rests from now on.
+            // The new value can be the next rest position.
             self.mean = mean;
             self.noise += LEARN_MOVING * (noise - self.noise);
         } else {
@@ -56,12 +56,11 @@ impl Usual {
     }
 }
 
-/// One device.
 #[derive(Clone, Copy, Debug)]
 struct Device {
     kind: Option<PartKind>,
     channels: [Usual; CHANNELS],
-    /// When it was last active, s on the loop's clock, and by which number of its readings.
+    /// Time of the last activity, s on the loop's clock, and the index of the value that changed.
     active: Option<(f64, usize)>,
 }
 
@@ -81,7 +80,6 @@ impl Device {
     }
 }
 
-/// The activity of a rig's devices.
 #[derive(Debug)]
 pub(crate) struct Activity {
     devices: Box<[Device; DEVICES_MAX]>,
@@ -89,7 +87,6 @@ pub(crate) struct Activity {
 }
 
 impl Activity {
-    /// Of these devices, none of which is known to rest or to move.
     pub(crate) fn of(roster: &[RosterEntry]) -> Self {
         Self::of_kinds(|place| roster.get(place).and_then(|entry| entry.part).map(Part::kind))
     }
@@ -99,7 +96,7 @@ impl Activity {
         Self { devices: Box::new(std::array::from_fn(device)), now_s: 0.0 }
     }
 
-    /// Adds a block; returns whether other devices are lit now than before.
+    /// Adds a block; returns whether the set of lit devices has changed.
     pub(crate) fn follow(&mut self, gauges: &Gauges) -> bool {
         let before = self.lit_ones();
         self.now_s = gauges.to_s;
@@ -109,7 +106,7 @@ impl Activity {
         self.lit_ones() != before
     }
 
-    /// Which number of its readings lights this device now.
+    /// Index of the value that lights this device now.
     pub(crate) fn lit(&self, place: usize) -> Option<usize> {
         let (at_s, channel) = self.devices.get(place)?.active?;
         (self.now_s - at_s <= LIT_S).then_some(channel)
@@ -144,7 +141,8 @@ mod tests {
             this
         }
 
-        /// One block of every device: noise, and what `moved` adds at a time (s); the lit ones with their channels.
+        /// One block of every device: noise, plus the offset of `moved` at a time (s). Returns the lit devices with their
+        /// channels.
         fn block(&mut self, moved: impl Fn(usize, usize, f64) -> f64) -> Vec<(usize, usize)> {
             let from_s = f64::from(self.block) * 0.1;
             self.block += 1;
@@ -154,7 +152,7 @@ mod tests {
                 for (place, kind) in KINDS.into_iter().enumerate() {
                     for channel in 0..9 {
                         self.samples += 1;
-                        // Even, but without a pattern that a block could show.
+                        // Uniform, without a pattern within a block.
                         let even = (self.samples * self.samples % 9973) as f64 / 9973.0 - 0.5;
                         let noise = if kind == PartKind::Pedal { 0.0 } else { 0.6 * least(kind, channel) * even };
                         gauges.devices[place].channels[channel].add(1.0 + noise + moved(place, channel, t_s));
@@ -171,7 +169,7 @@ mod tests {
         for hand in [0, 1] {
             let mut bench = Bench::new();
             let since_s = 2.0;
-            // 1 cm to and fro, twice a second.
+            // 1 cm back and forth, twice per second.
             let to_and_fro = |place, channel, t_s: f64| {
                 if (place, channel) == (hand, 1) { 0.01 * (12.6 * (t_s - since_s)).sin() } else { 0.0 }
             };
@@ -191,7 +189,7 @@ mod tests {
         let still: Vec<_> = (0..20).map(|_| bench.block(pushed).len()).collect();
         assert_eq!(still[19], 0, "a load that rests is no change: {still:?}");
         let mut bench = Bench::new();
-        // 3 N in a second.
+        // 3 N per second.
         let rising = |place, channel, t_s: f64| if (place, channel) == (2, 0) { 3.0 * (t_s - 2.0) } else { 0.0 };
         let seen: Vec<_> = (0..10).map(|_| bench.block(rising)).collect();
         assert!(seen[3..].iter().all(|lit| lit == &[(2, 0)]), "{seen:?}");

@@ -1,4 +1,4 @@
-//! The window: receives what the loop has sent, lays out the panels, and sends the operator's commands.
+//! The window: receives data from the loop, lays out the panels, and sends the operator's commands.
 
 mod acting;
 mod calibrating;
@@ -71,32 +71,31 @@ use checking::Checking;
 use listing::Listing;
 use starting::Starting;
 
-/// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 a second)
-/// ...
+/// Antialiasing in 3-D is switched off if the median time between frames is longer than this (fewer than 26 frames per
+/// second), ...
 const SLOW_MS: f64 = 38.0;
 /// ... after the window has had this time to warm up.
 const WARM_UP: Duration = Duration::from_secs(4);
 
-/// State of the console.
 #[derive(Debug)]
 pub struct ConsoleApp {
     door: Option<Door>,
     /// The emulators of an emulated rig; they end after the loop.
     emulators: Option<Emulators>,
-    /// The emulators' technician, who reads the wizards' instructions.
+    /// The emulators' technician, who follows the wizards' instructions.
     reader: Option<Reader>,
     running: Choice,
     starting: Option<Starting>,
     start: StartPage,
-    /// Loops that the console starts run in simulated time, so many times as fast as real time.
+    /// Speed of loops in simulated time, as a multiple of real time.
     simulated_speed: Option<f64>,
-    /// Opens the line to the machine with the arm, if it is at another one.
+    /// Opens the link to the machine with the arm, if it is another machine.
     reopen: Option<Reopen>,
-    /// Where a simulated rig tells of the objects of its scene.
+    /// Source of a simulated rig's objects.
     objects: Option<Watched>,
-    /// The program that starts emulators; this one, except in a test.
+    /// The program that starts emulators: this one, except in a test.
     program: Option<PathBuf>,
-    /// Used to wake the window from another thread.
+    /// Wakes the window from another thread.
     ctx: egui::Context,
     live: Live,
     outbox: Outbox,
@@ -111,34 +110,33 @@ pub struct ConsoleApp {
     checking: Checking,
     listing: Listing,
     list: List,
-    /// The page of an extra that may hold the machine.
+    /// The page of an extra that may reserve the machine.
     page: Option<Box<dyn Page>>,
-    /// A recorded session that is on the screen instead of the machine.
+    /// A recorded session that is shown instead of the machine.
     past: Option<Past>,
     in_force: InForce,
     diary: Diary,
     sessions: Sessions,
     /// The scene that was shown before a wizard changed it.
     watched: Option<Scene>,
-    /// What the technician of an emulated rig has read last.
+    /// The last screen that the emulated rig's technician has read.
     read: Option<Screen>,
     options: Options,
     surface: Option<Arc<Surface>>,
-    /// Name of the OpenGL renderer.
     renderer: String,
     meter: Option<Meter>,
     opened: Instant,
     framed: Instant,
-    /// When something was last engaged, or a wizard was open.
+    /// Time at which a side was last engaged or a wizard was open.
     moved: Instant,
-    /// When the waiting ticks and events were last read.
+    /// Time at which the waiting ticks and events were last read.
     taken: Instant,
     pictured: bool,
     /// Few frames are drawn, because nothing is engaged.
     calm: bool,
 }
 
-/// Starts the loop of a plan, recorded if sessions are.
+/// Starts the loop of a plan, recorded if sessions are recorded.
 pub(crate) fn start_recorded(
     plan: &Plan,
     sessions: &mut Sessions,
@@ -156,12 +154,11 @@ pub(crate) fn start_recorded(
     Ok((handle, watched))
 }
 
-/// A loop that was started, and where a simulated rig tells of the objects of its scene.
+/// A running loop, and the source of a simulated rig's objects.
 pub(crate) type Started = (Handle, Option<Watched>);
 
 impl ConsoleApp {
-    /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is
-    /// available.
+    /// Creates the console for a running loop. Sets fonts and style of the context; draws in 3-D if OpenGL is available.
     pub fn new(cc: &eframe::CreationContext<'_>, handle: Handle, rig: RigConfig, scene: Scene) -> Self {
         theme::apply(&cc.egui_ctx);
         let now = Instant::now();
@@ -217,7 +214,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Reads everything that the loop has sent.
+    /// Reads all data that the loop has sent.
     fn take_in(&mut self) {
         if let Some(moment) = self.objects.as_ref().and_then(Watched::newest) {
             let scene = &self.live.scene;
@@ -258,20 +255,20 @@ impl ConsoleApp {
         self.live.bias_moved_n = self.in_force.bias_moved_n();
     }
 
-    /// Ends the loop and starts it again, idle: only the operator engages it. Never possible in a stop or a fault.
+    /// Ends the loop and restarts it idle: only the operator engages it. Not possible in a stop or a fault.
     fn restart(&mut self, rig: RigConfig, scene: Scene) -> Result<(), String> {
         rig.validate().and_then(|()| scene.validate()).map_err(|error| error.to_string())?;
         self.take_in();
         if let Some(why) = text::calibrations::closed(self.live.state()) {
             return Err(why.to_owned());
         }
-        // End the old loop first: a rig must have one controller only.
+        // End the old loop first: a rig must have only one controller.
         drop(self.door.take());
         self.sessions.end();
         self.start_loop(rig, scene)
     }
 
-    /// Starts the loop of this rig, idle, when the old one has ended.
+    /// Starts the loop of this rig, idle, after the old one has ended.
     fn start_loop(&mut self, mut rig: RigConfig, scene: Scene) -> Result<(), String> {
         let line = match &self.reopen {
             Some(reopen) => reopen.open(&mut rig, &scene).map_err(|error| {
@@ -312,7 +309,7 @@ impl ConsoleApp {
         Ok(())
     }
 
-    /// Applies the choice of the trade-off panel.
+    /// Applies the choice of the Trade-off panel.
     fn apply_tradeoff(&mut self, rig: RigConfig) {
         let outcome = self.restart(rig, self.live.scene.clone());
         if let Some(tradeoff) = &mut self.panels.tradeoff {
@@ -351,7 +348,7 @@ impl ConsoleApp {
         let written = language::with(Language::English, written);
         self.sessions.tell(&self.live.marks_s, &self.top_bar.alarms.log, &written, loop_s);
         let room = ui.available_rect_before_wrap();
-        // An identity of its own: an alarm that comes or goes above must take no slider out of a hand.
+        // A separate id: an alarm that appears above must not end the drag of a slider.
         ui.scope_builder(UiBuilder::new().scope_id(Id::unique("page")), |ui| self.page_layout(ui));
         self.top_bar.alarms.list_ui(ui.ctx(), room);
         self.settings.now.toured |= self.help.ui(ui.ctx(), room, !self.list.is_open);
@@ -380,7 +377,7 @@ impl eframe::App for ConsoleApp {
         self.measure(&ctx, frame);
         // Not switched on again: a view that keeps changing its look would be worse.
         let slow = self.opened.elapsed() > WARM_UP && self.live.figures.frame_ms[0] > SLOW_MS;
-        // Screenshots for the documents are antialiased, however long that takes.
+        // Screenshots for the documents are always antialiased, however long that takes.
         self.live.rough_edges = self.photographer.is_none() && (self.live.rough_edges || slow);
         self.panels.scene.smooth = !self.live.rough_edges;
         self.sessions.reel().rest(!self.settings.now.records_picture);
@@ -393,7 +390,7 @@ impl eframe::App for ConsoleApp {
             self.palette.close();
         }
         self.obey_commands(&ctx);
-        // The time that passed: `stable_dt` is a sixtieth of a second in every window that waits between its frames.
+        // The elapsed time: `stable_dt` is 1/60 s in every window that waits between its frames.
         self.go_on_in_past(f64::from(ui.input(|input| input.unstable_dt)));
         self.layout(ui);
         if !self.start.is_open {
@@ -435,9 +432,9 @@ impl eframe::App for ConsoleApp {
     }
 }
 
-/// Creates the door to a loop; it wakes the window of this context.
+/// Connects to a loop that wakes the window of this context.
 fn door_of(handle: Handle, ctx: &egui::Context) -> Door {
     let ctx = ctx.clone();
-    // A short delay, because without one egui draws two frames.
+    // A short delay, because egui would draw two frames without one.
     Door::new(handle, move || ctx.request_repaint_after(Duration::from_millis(1)))
 }

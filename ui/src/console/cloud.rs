@@ -1,8 +1,7 @@
-//! Measured and rendered force over the last seconds, and the ellipsoid that contains 95 % of their difference.
+//! Measured and rendered force over the last seconds, and the ellipsoid that contains 95 % of their differences.
 //!
-//! Forces in N, workspace frame. The ellipsoid is that of a normal distribution with the same mean and covariance. The
-//! share of differences that it actually contains is counted, because contact is not normally distributed. Samples that
-//! are not finite are left out.
+//! Forces in N, workspace frame. The ellipsoid is that of a normal distribution with the same mean and covariance. The actual
+//! fraction of differences inside it is counted, because contact is not normally distributed. Non-finite samples are ignored.
 
 use std::collections::VecDeque;
 
@@ -11,14 +10,13 @@ use nalgebra::{Matrix3, Vector3};
 /// Stored time, s, and time between samples, s.
 pub const SECONDS: f64 = 6.0;
 const STEP_S: f64 = 0.02;
-/// A longer time without a sample, s, is one in which a force was not known.
+/// A longer interval without a sample, s, means that a force was unknown.
 pub const GAP_S: f64 = 0.1;
 /// 95 % quantile of chi squared with three degrees of freedom.
 const CHI2_95: f64 = 7.814_728;
-/// Fewest samples for an ellipsoid.
+/// Minimum number of samples for an ellipsoid.
 const LEAST: usize = 50;
 
-/// One pair of forces.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
     /// Time, s on the loop's clock.
@@ -42,7 +40,7 @@ pub struct Ellipsoid {
     pub mean_n: Vector3<f64>,
     /// Half axes, N, as columns.
     pub half_axes_n: Matrix3<f64>,
-    /// Share of the differences inside it, 0 to 1.
+    /// Fraction of the differences inside it, 0 to 1.
     pub holds: f64,
 }
 

@@ -5,25 +5,24 @@ use std::collections::VecDeque;
 /// Stored period, s.
 pub const SECONDS: usize = 120;
 
-/// Missed periods of the last seconds.
 #[derive(Clone, Debug, Default)]
 pub struct Deadlines {
-    /// Oldest first; the last one is the present second.
+    /// Oldest first; the last one is the current second.
     counts: VecDeque<u64>,
-    /// The present second, on the loop's clock.
+    /// The current second, on the loop's clock.
     now: u64,
 }
 
 impl Deadlines {
-    /// Adds the number of periods missed before the tick at `t_s` (s on the loop's clock). If the clock stands still,
-    /// runs backwards or is not finite, they are added to the present second.
+    /// Adds the number of periods missed before the tick at `t_s` (s on the loop's clock). If the clock stops, runs backwards
+    /// or is not finite, they are added to the current second.
     pub fn push(&mut self, t_s: f64, missed: u64) {
         let second = t_s.max(0.0) as u64;
         if self.counts.is_empty() {
             self.now = second;
             self.counts.push_back(0);
         }
-        // After a gap longer than the stored period nothing old remains.
+        // After a gap longer than the stored period, no old counts remain.
         for _ in 0..second.saturating_sub(self.now).min(SECONDS as u64) {
             self.counts.push_back(0);
         }
@@ -41,7 +40,6 @@ impl Deadlines {
         self.counts.iter().rev().copied().enumerate()
     }
 
-    /// Total over the stored period.
     pub fn total(&self) -> u64 {
         self.counts.iter().sum()
     }

@@ -1,14 +1,14 @@
-//! A record of the session, written with the figures when the window is closed: tests can check a session by what the
-//! loop did, not by how it looked.
+//! A log of the run, written with the results when the window is closed: tests check the behaviour of the loop, not the look
+//! of the window.
 
 use nima_core::impedance::Mode;
 use nima_machine::{messages::Tick, runtime::Summary};
 use serde::Serialize;
 
-/// Most states and modes stored.
+/// Maximum number of stored states and modes.
 const KEPT: usize = 200;
 
-/// Record of the right arm pair.
+/// Log of the right arm pair.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Diary {
     /// Names of the loop's states in the order in which they were entered.
@@ -17,7 +17,7 @@ pub struct Diary {
     pub modes: Vec<Mode>,
     /// Gain at the end, without unit.
     pub gain: f64,
-    /// Ticks in which the instrument was led from the window.
+    /// Ticks in which the instrument was driven from the window.
     pub led_ticks: u64,
     /// Number of marks at the end.
     pub marks: usize,
@@ -25,18 +25,15 @@ pub struct Diary {
     pub paused: bool,
 }
 
-/// Figures of the loop and record of the session, in one object.
+/// Results of the loop and log of the run, in one object.
 #[derive(Debug, Serialize)]
 pub struct WithScreen<'a> {
-    /// Figures of the last loop.
     #[serde(flatten)]
     pub summary: &'a Summary,
-    /// Record of the whole session.
     pub screen: &'a Diary,
 }
 
 impl Diary {
-    /// Adds one tick.
     pub(super) fn tick(&mut self, tick: &Tick) {
         follow(&mut self.states, tick.state.word());
         follow(&mut self.modes, tick.mode);

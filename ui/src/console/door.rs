@@ -1,8 +1,8 @@
 //! Connects the loop to a window that is drawn rarely.
 //!
-//! While nothing moves, the window is drawn only once in a while. The loop still sends ticks and events, which must
-//! neither fill its queue nor be shown late. So a thread reads them, stores them, and wakes the window when there is
-//! something to show. While the window is drawn continuously, the thread is idle.
+//! While nothing moves, the window is drawn only occasionally. The loop still sends ticks and events, which must neither fill
+//! its queue nor be shown late. A thread therefore reads and stores them, and wakes the window when there is something to
+//! show. While the window is drawn continuously, the thread is idle.
 
 use std::{
     sync::{
@@ -25,26 +25,24 @@ use super::activity::Activity;
 
 /// Interval of the thread while the window is idle, short enough not to be noticed.
 const LOOK: Duration = Duration::from_millis(50);
-/// Most ticks stored; further ones wait in the loop's queue, where losses are counted.
+/// Maximum number of stored ticks; further ticks wait in the loop's queue, where losses are counted.
 const KEPT_MAX: usize = 8192;
-/// Most blocks of what the devices have delivered that are stored; newer ones are dropped.
+/// Maximum number of stored blocks of device readings; newer blocks are dropped.
 const BLOCKS_MAX: usize = 40;
 /// A longer time without a tick is shown as an alarm.
 const SILENCE: Duration = Duration::from_millis(600);
-/// A change of the force by this much (N), or of the tip position by this much (m), wakes the window; computed on means
-/// over this many ticks, so that the sensor's noise does not.
+/// A change of the force by this much (N), or of the tip position by this much (m), wakes the window. The changes are
+/// computed from means over this many ticks, so that sensor noise does not wake it.
 const SEEN_N: f64 = 0.05;
 const SEEN_M: f64 = 2e-4;
 const MEAN_OVER: usize = 50;
 
-/// Something that came from the loop.
+/// Data from the loop.
 #[derive(Clone, Copy, Debug)]
 pub enum News<'a> {
-    /// An event.
     Event(&'a Event),
-    /// A tick.
     Tick(&'a Tick),
-    /// What the devices have delivered in a block of time.
+    /// Device readings of a block of time.
     Gauges(&'a Gauges),
 }
 
@@ -74,7 +72,7 @@ struct Kept {
     activity: Activity,
     /// The state of each side that the window shows.
     shown: [Option<Glance>; SIDES],
-    /// When the last tick arrived.
+    /// Arrival time of the last tick.
     came: Instant,
     /// Problems at the last check: silence, end of the loop.
     wrong: [bool; 2],
@@ -83,8 +81,8 @@ struct Kept {
 }
 
 impl Door {
-    /// Connects to this loop; `wake` is called from another thread when there is something to show. If that thread
-    /// cannot be created, the window is updated later but still correctly.
+    /// Connects to this loop; `wake` is called from another thread when there is something to show. If that thread cannot be
+    /// created, the window is updated later but still correctly.
     pub fn new(handle: Handle, wake: impl Fn() + Send + 'static) -> Self {
         let kept = Kept {
             ticks: Vec::new(),
@@ -110,8 +108,7 @@ impl Door {
         &self.shared.handle
     }
 
-    /// Passes on every waiting event, then what the devices have delivered, and then every waiting tick, each oldest
-    /// first.
+    /// Passes every waiting event, then the device readings, then every waiting tick, each oldest first.
     pub fn take(&self, mut each: impl FnMut(News<'_>)) {
         let mut kept = self.shared.lock();
         self.shared.bring_in(&mut kept);
@@ -127,12 +124,12 @@ impl Door {
         kept.woken = false;
     }
 
-    /// Whether the window was woken and has not read the news yet.
+    /// Whether the window was woken and has not read the data yet.
     pub fn has_woken(&self) -> bool {
         self.shared.lock().woken
     }
 
-    /// When the last tick arrived, as of the last check.
+    /// Arrival time of the last tick, as of the last check.
     pub fn last_came(&self) -> Instant {
         self.shared.lock().came
     }
@@ -146,12 +143,12 @@ impl Door {
         }
     }
 
-    /// Sets whether the window shows which devices are moved: then it is woken when another one is.
+    /// Sets whether the window shows which devices are moved: if so, it is woken when another device is moved.
     pub fn show_devices(&self, shown: bool) {
         self.shared.shows_devices.store(shown, Ordering::Relaxed);
     }
 
-    /// Ends the loop and returns its figures; `None` if its thread has panicked.
+    /// Ends the loop and returns its results; `None` if its thread has panicked.
     pub fn stop_and_join(mut self) -> Option<Summary> {
         self.dismiss();
         let unused = Arc::clone(&self.shared);
@@ -159,7 +156,6 @@ impl Door {
         Arc::into_inner(unused)?.handle.stop_and_join()
     }
 
-    /// Ends the thread.
     fn dismiss(&mut self) {
         self.shared.end.store(true, Ordering::Relaxed);
         if let Some(keeper) = self.keeper.take() {
@@ -225,7 +221,6 @@ impl Shared {
     }
 }
 
-/// The visible part of some ticks.
 #[derive(Clone, Copy, Debug)]
 struct Glance {
     last: Tick,
@@ -237,7 +232,7 @@ struct Glance {
 }
 
 impl Glance {
-    /// From these ticks of this side; `None` if there are none.
+    /// `None` without ticks of this side.
     fn of(ticks: &[Tick], side: Side) -> Option<Self> {
         let ticks = || ticks.iter().rev().filter(|tick| tick.side == side).take(MEAN_OVER);
         let last = *ticks().next()?;
@@ -254,7 +249,7 @@ impl Glance {
 
     /// Whether the difference would be visible.
     fn differs(&self, now: &Self) -> bool {
-        // Values that are not finite differ only from finite ones.
+        // Non-finite values differ only from finite ones.
         let moved = |a: &Vector3<f64>, b: &Vector3<f64>, least: f64| {
             let by = (a - b).norm();
             by > least || (by.is_nan() && a.norm().is_nan() != b.norm().is_nan())
@@ -281,7 +276,7 @@ mod tests {
 
     use super::*;
 
-    /// A loop at rest, its connection, and a channel that reports when the window is woken.
+    /// An idle loop, its connection, and a channel that reports when the window is woken.
     fn at_rest() -> (Door, mpsc::Receiver<()>) {
         let rig = RigConfig::load("simulated").unwrap();
         let scene = Scene::load("peg_transfer").unwrap();
@@ -327,7 +322,7 @@ mod tests {
         wait_for(&door, |tick| tick.state == LoopState::Idle);
         door.rest(true);
         assert!(door.handle().send(Command::Shutdown));
-        // Woken once for the first news, and again because it was read since.
+        // Woken once for the first data, and again because they were read since.
         wakes.recv_timeout(Duration::from_secs(20)).unwrap();
         door.take(|_| {});
         if door.handle().is_running() {

@@ -1,10 +1,10 @@
-//! A moving picture on the screen.
+//! A moving image on the screen.
 
 use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use nima_endoscope::Picture;
 
-/// Two textures, of which one is shown while the other is written: where the processor draws, a frame before may still be read by its threads, and
-/// would show parts of both pictures.
+/// Two textures: one is shown while the other is written. With a software renderer, its threads may still read the previous
+/// frame, and would show parts of both images.
 #[derive(Default)]
 pub(crate) struct DoubleBuffer {
     textures: [Option<TextureHandle>; 2],
@@ -12,7 +12,7 @@ pub(crate) struct DoubleBuffer {
 }
 
 impl DoubleBuffer {
-    /// Uploads a picture, which is shown from now on.
+    /// Uploads an image, which is shown from now on.
     pub(crate) fn upload(&mut self, ctx: &Context, name: &str, picture: &Picture) {
         let image = ColorImage::from_rgba_premultiplied(picture.size_px, &picture.rgba);
         self.front = 1 - self.front;
@@ -23,7 +23,7 @@ impl DoubleBuffer {
         }
     }
 
-    /// What is shown; `None` before the first picture.
+    /// The shown texture; `None` before the first image.
     pub(crate) fn id(&self) -> Option<TextureId> {
         self.textures[self.front].as_ref().map(TextureHandle::id)
     }

@@ -1,8 +1,8 @@
 //! Measures the cost of the window: time between frames, work per frame, start-up time, processor time and memory. The
 //! program measures itself, for `nima console --frames`.
 //!
-//! Times in ms or s as the names say, processor time as shares of one core, memory in MB. Processor time and memory
-//! come from `/proc` and are zero on systems without it.
+//! Times in ms or s as the names say, processor time as fractions of one core, memory in MB. Processor time and memory come
+//! from `/proc` and are zero on systems without it.
 
 use std::{
     collections::BTreeMap,
@@ -14,7 +14,7 @@ use serde::Serialize;
 
 /// Time after which window, shaders and fonts have settled.
 const WARM_UP: Duration = Duration::from_secs(4);
-/// If the end of the run is known, at most this much before it is measured.
+/// Maximum time between the end of the measurement and the end of the run, if the latter is known.
 const LAST: Duration = Duration::from_secs(30);
 /// Threads of the loop; all other threads belong to the window.
 const MACHINE: [&str; 3] = ["realtime", "supervisor", "emulator"];
@@ -24,13 +24,9 @@ const TICKS_PER_S: f64 = 100.0;
 /// Percentiles of durations, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// The median.
     pub p50: f64,
-    /// Nine in ten are below.
     pub p90: f64,
-    /// Ninety-nine in a hundred are below.
     pub p99: f64,
-    /// The longest.
     pub max: f64,
 }
 
@@ -47,20 +43,19 @@ impl Spread {
     }
 }
 
-/// Processor time as shares of one core.
+/// Processor time as fractions of one core.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Processor {
-    /// The whole process.
     pub process: f64,
-    /// All threads but those of the loop: the cost of the window.
+    /// All threads except those of the loop: the cost of the window.
     pub window: f64,
     /// The loop and its supervisor.
     pub machine: f64,
-    /// Each thread by name; threads of the same name are added up.
+    /// Each thread by name; threads of the same name are added.
     pub threads: BTreeMap<String, f64>,
 }
 
-/// All figures of a run.
+/// Results of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
     /// Name of the OpenGL renderer.
@@ -71,13 +66,13 @@ pub struct Figures {
     pub seconds: f64,
     /// Number of frames in that time.
     pub pictures: usize,
-    /// Time between two frames, while something was engaged, ms.
+    /// Time between two frames, while a side was engaged, ms.
     pub period_ms: Spread,
     /// Work of a frame on the window's thread, without displaying it: layout, triangles, driver calls, ms.
     pub work_ms: Spread,
     /// The program's own part of it: panels and plots, without triangles and driver, ms.
     pub layout_ms: Spread,
-    /// Share of the window that was redrawn, 0 to 1, mean over the frames.
+    /// Fraction of the window that was redrawn, 0 to 1, mean over the frames.
     pub drawn_share: f64,
     /// Processor time over the same period.
     pub processor: Processor,
@@ -87,7 +82,6 @@ pub struct Figures {
     pub resident_mb: Vec<f64>,
 }
 
-/// Takes the measurements.
 #[derive(Debug)]
 pub struct Meter {
     opened: Instant,
@@ -103,16 +97,14 @@ pub struct Meter {
     resident_mb: Vec<f64>,
 }
 
-/// One picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
     /// Time since the previous frame, if that one requested this one; `None` while nothing moves.
     pub period: Option<Duration>,
     /// Work of the previous frame, s.
     pub work_s: Option<f64>,
-    /// Share of the window that the previous frame redrew, 0 to 1.
+    /// Fraction of the window that the previous frame redrew, 0 to 1.
     pub drawn_share: f64,
-    /// Whether a tick is shown.
     pub live: bool,
 }
 
@@ -134,8 +126,8 @@ impl Meter {
         }
     }
 
-    /// Records the start of a frame. Returns true if another frame is needed at once, because only its start shows when
-    /// this one was on the screen.
+    /// Records the start of a frame. Returns true if another frame is needed at once: only its start shows when this one
+    /// reached the screen.
     pub fn begin(&mut self, picture: &Picture) -> bool {
         if std::mem::take(&mut self.live_pending) {
             self.first_live_s = age_s().or_else(|| Some(self.opened.elapsed().as_secs_f64()));
@@ -164,7 +156,7 @@ impl Meter {
         }
     }
 
-    /// The figures; `renderer` is the name of the OpenGL renderer.
+    /// `renderer`: name of the OpenGL renderer.
     pub fn figures(&self, renderer: &str) -> Figures {
         let seconds = self.began.as_ref().map_or(0.0, |(began, _)| began.elapsed().as_secs_f64());
         let before = self.began.as_ref().map(|(_, threads_s)| threads_s.clone()).unwrap_or_default();
@@ -185,8 +177,8 @@ impl Meter {
 }
 
 impl Processor {
-    /// Shares of one core from two readings of the threads' times (s), `seconds` apart. A thread that started in
-    /// between counts from zero; one that has ended is not included.
+    /// Fractions of one core, from two readings of the threads' times (s), `seconds` apart. A thread that started in between
+    /// counts from zero; one that has ended is not included.
     fn between(before: &BTreeMap<String, f64>, now: &BTreeMap<String, f64>, seconds: f64) -> Self {
         let share = |(name, time_s): (&String, &f64)| {
             let used_s = (time_s - before.get(name).copied().unwrap_or(0.0)).max(0.0);

@@ -13,17 +13,15 @@ use super::{
     theme,
 };
 
-/// Which help windows are open.
+/// Open help windows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Help {
-    /// The step of the tour on display.
+    /// The current step of the tour.
     tour: Option<usize>,
-    /// Whether the glossary is open.
     pub glossary: bool,
 }
 
 impl Help {
-    /// Starts the tour.
     pub const fn begin_tour(&mut self) {
         self.tour = Some(0);
     }
@@ -82,14 +80,13 @@ impl Help {
     }
 }
 
-/// The glossary in the order of the language.
+/// The glossary in the alphabetical order of the language.
 fn terms() -> [(&'static str, &'static str); GLOSSARY.len()] {
     let mut terms = GLOSSARY.map(|(word, meaning)| (word.get(), meaning.get()));
     terms.sort_by_key(|(word, _)| word.to_lowercase());
     terms
 }
 
-/// A key and what it does.
 fn key_ui(ui: &mut Ui, key: &str, meaning: &str) {
     ui.horizontal(|ui| {
         let key = Label::new(RichText::new(key).font(theme::strong(14.0))).halign(Align::Min);

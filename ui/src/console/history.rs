@@ -1,8 +1,8 @@
 //! Data of the traces: minima and maxima per time bucket, updated with every sample, at three resolutions.
 //!
 //! A frame reads at most a few thousand buckets and no raw samples, so drawing costs the same after an hour as after a
-//! minute, and memory is constant. Times are seconds on the loop's clock; values are newtons here, but nothing depends
-//! on it.
+//! minute, and memory is constant. Times are seconds on the loop's clock; the values here are newtons, but nothing depends on
+//! the unit.
 
 use std::collections::VecDeque;
 
@@ -23,7 +23,7 @@ const GAP_S: f64 = 0.05;
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     points: Vec<PlotPoint>,
-    /// Index of the first point of each run but the first.
+    /// Index of the first point of each run except the first.
     breaks: Vec<usize>,
 }
 

@@ -1,9 +1,8 @@
-//! The calibrations in force on each side, for display and for the loop: those of the sensor and tool that are mounted
-//! there.
+//! The active calibrations of each side, for display and for the loop: those of the mounted sensor and tool.
 //!
-//! The rig determines sensor and tool. For a simulated rig they are named in the rig file. On a rig with devices each
-//! sensor reports its serial number when it is opened; before that nothing is in force, and afterwards
-//! [`InForce::meet`] updates the calibrations whenever a sensor connects or disconnects.
+//! The rig determines sensor and tool. For a simulated rig they are named in the rig file. On a rig with devices each sensor
+//! reports its serial number when it is opened; before that no calibration is active, and afterwards [`InForce::meet`]
+//! updates the calibrations whenever a sensor connects or disconnects.
 
 mod in_use;
 mod of_side;
@@ -35,12 +34,12 @@ use super::{
 };
 use crate::console::text;
 
-/// The calibrations in force, and problems with them.
+/// The active calibrations, and problems with them.
 #[derive(Debug)]
 pub struct InForce {
     store: Option<Store>,
     sides: [OfSide; SIDES],
-    /// The arm that is calibrated by the wizards.
+    /// The arm that the wizards calibrate.
     side: Side,
     told: Option<String>,
     /// Those of a recorded session, one line each.
@@ -56,7 +55,7 @@ impl InForce {
         this
     }
 
-    /// Those of a recorded session, as its file tells them: nothing can be changed.
+    /// The calibrations of a recorded session, from its metadata; they cannot be changed.
     pub fn of_past(lines: Vec<String>) -> Self {
         Self { store: None, sides: Default::default(), side: Side::Right, told: None, past: lines }
     }
@@ -84,15 +83,15 @@ impl InForce {
         *now = OfSide::load(self.store.as_ref(), bound, now.last.take());
     }
 
-    /// Reads the identity of the sensors of a running loop, and puts their calibrations in force. Returns true for each
-    /// side whose sensor has changed.
+    /// Reads the identity of the sensors of a running loop, and activates their calibrations. Returns true for each side
+    /// whose sensor has changed.
     pub fn meet(&mut self, handle: &Handle, rig: &RigConfig) -> [bool; SIDES] {
         Side::ALL.map(|side| self.meet_one(side, handle, rig).unwrap_or(false))
     }
 
     fn meet_one(&mut self, side: Side, handle: &Handle, rig: &RigConfig) -> Option<bool> {
         let tool = &rig.devices.as_ref()?.arm(side)?.tool;
-        // Read the change first: if the sensor is exchanged after this, the loop refuses the calibrations.
+        // Read the change first: if the sensor is swapped after this, the loop rejects the calibrations.
         let change = handle.wrist_change(side);
         let now = &self.sides[side.index()];
         if now.bound == Bound::Nothing || now.since == Some(change) {
@@ -108,7 +107,7 @@ impl InForce {
         };
         self.go_over(side, bound);
         let now = &mut self.sides[side.index()];
-        // If the loop did not accept them, they are offered again in the next frame.
+        // If the loop does not accept them, they are offered again in the next frame.
         let taken = handle.put_in_force(change, &now.calibrations(rig.tip_force.fallback));
         now.since = taken.then_some(change);
         Some(before.is_some() && now.last != before)
@@ -119,12 +118,12 @@ impl InForce {
         self.sides.iter().any(|of_side| of_side.bound == Bound::Waiting)
     }
 
-    /// A known sensor and tool that need a gravity calibration and have none.
+    /// A known sensor and tool without the gravity calibration that they need.
     pub fn uncalibrated(&self) -> Option<&WristId> {
         self.sides.iter().find_map(OfSide::without_gravity)
     }
 
-    /// What is missing on each side whose sensor is known: sensor, tool and the names of the calibrations.
+    /// Missing calibrations of each side whose sensor is known: sensor, tool and names.
     pub fn lacking(&self) -> Vec<(&WristId, Vec<&'static str>)> {
         self.sides
             .iter()
@@ -133,22 +132,19 @@ impl InForce {
             .collect()
     }
 
-    /// The arm that is calibrated by the wizards.
     pub const fn side(&self) -> Side {
         self.side
     }
 
-    /// Selects the arm that is calibrated by the wizards.
     pub const fn choose(&mut self, side: Side) {
         self.side = side;
     }
 
-    /// Adds one tick of the loop.
     pub fn watch(&mut self, tick: &Tick) {
         self.sides[tick.side.index()].watch(tick);
     }
 
-    /// Result of the check of the bias, of the side that needs more attention; `None` if there is nothing to check.
+    /// Result of the bias check of the side that needs more attention; `None` if there is nothing to check.
     pub fn drift(&self) -> Option<Drift> {
         let attention = |drift: &Drift| match drift {
             Drift::Fine { .. } => 0,
@@ -181,7 +177,7 @@ impl InForce {
         self.sides.each_mut().map(|of_side| of_side.calibrations(rig.tip_force.fallback))
     }
 
-    /// The gravity calibration of a side, and the limit of the force that remains at rest, N.
+    /// The gravity calibration of a side, and the limit of the remaining force at rest, N.
     pub fn gravity(&self, side: Side) -> Option<(GravityModel, f64)> {
         self.sides[side.index()].gravity()
     }
@@ -196,7 +192,7 @@ impl InForce {
         self.sides[side.index()].wrist()
     }
 
-    /// The calibrations of the force of this side; `last` is the last ready check.
+    /// The force calibrations of this side; `last` is the last ready check.
     pub(crate) fn kept(&self, side: Side, last: Option<&ReadyRecord>) -> Vec<Line> {
         self.sides[side.index()].kept(side, last)
     }
@@ -206,12 +202,12 @@ impl InForce {
         self.sides.iter().any(OfSide::is_from_the_future)
     }
 
-    /// The store of calibrations and checks; `None` if no folder is known.
+    /// The store of calibrations and checks; `None` without a folder.
     pub const fn store(&self) -> Option<&Store> {
         self.store.as_ref()
     }
 
-    /// Sensor and tool to which a new calibration would be bound.
+    /// Sensor and tool for which a new calibration would be saved.
     pub fn binding(&self) -> Binding {
         let of_side = &self.sides[self.side.index()];
         let (sensor, tool) =
@@ -221,17 +217,16 @@ impl InForce {
         Binding { sensor, tool, date: utc_now(), correspondence, store, subject: None, rig: String::new() }
     }
 
-    /// The same with the arm as this rig, of this name and with these devices, describes it.
+    /// Like [`InForce::binding`], for the arm of this rig, with this name and these devices.
     pub fn binding_of(&self, name: &str, rig: &RigConfig, roster: &Roster) -> Binding {
         let subject = Subject::of(rig, self.side, roster);
         Binding { subject, rig: name.to_owned(), ..self.binding() }
     }
 
-    /// Saves a frame calibration: its record, with what it changes, into the store, and the numbers into the rig file of this
-    /// name, or into a copy in `folder` if it is a built-in rig. Returns the rig as it is now, its path, and a text for the screen.
+    /// Saves a frame calibration: its record and changes into the store, and the values into the rig file of this name, or
+    /// into a copy in `folder` if the rig is built in. Returns the new rig, its path, and a text for the screen.
     ///
-    /// # Errors
-    /// One line for the screen.
+    /// # Errors Returns one line for the screen.
     pub fn save_frame(
         &self,
         saving: FrameSaving,
@@ -253,10 +248,9 @@ impl InForce {
         Ok((rig, path, words))
     }
 
-    /// Changes the rig file of this name, or a copy in `folder` if it is a built-in rig.
+    /// Changes the rig file of this name, or a copy in `folder` if the rig is built in.
     ///
-    /// # Errors
-    /// One line for the screen.
+    /// # Errors Returns one line for the screen.
     pub fn change_rig(
         &self,
         changes: &[RigChange],
@@ -271,7 +265,7 @@ impl InForce {
         change_rig(rig, &folder.join("rigs"), changes).map_err(|error| chain(&error))
     }
 
-    /// Saves a record and puts it in force; returns a text for the screen.
+    /// Saves a record and activates it; returns a text for the screen.
     pub fn save(&mut self, saving: Saving) -> Result<String, String> {
         let store = self.store.as_ref().ok_or(text::calibrations::NO_FOLDER.get())?;
         let of_side = &mut self.sides[self.side.index()];
@@ -283,12 +277,11 @@ impl InForce {
         Ok(text::calibrations::saved(&path))
     }
 
-    /// Adds a problem to be displayed.
     pub fn tell(&mut self, words: String) {
         self.told = Some(words);
     }
 
-    /// Problems, and what can be done.
+    /// Problems, with remedies.
     pub fn told(&self) -> Vec<String> {
         let [right, left] = &self.sides;
         let exchanged = right.is_exchanged_with(left).zip(left.is_exchanged_with(right));
@@ -300,7 +293,7 @@ impl InForce {
         self.told.clone().into_iter().chain(of_sides.into_iter().flatten()).collect()
     }
 
-    /// One line for each calibration that matters for this rig.
+    /// One line for each calibration that this rig needs.
     pub fn lines(&self) -> Vec<String> {
         if !self.past.is_empty() {
             return self.past.clone();

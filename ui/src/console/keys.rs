@@ -1,4 +1,4 @@
-//! Keys with the same function in every view; what each does is in the table of commands.
+//! Keys with the same function in every view. The table of commands lists their functions.
 
 use egui::{Context, Event, Key};
 
@@ -7,8 +7,8 @@ use super::{
     roles::Role,
 };
 
-/// Space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no button.
-/// While a text is being entered, Space is a letter and only Escape stops.
+/// Space and Escape stop, wherever the keyboard focus is; the key press is consumed, so that it triggers no button. In a text
+/// field, Space is a letter and only Escape stops.
 pub(super) fn stop_pressed(ctx: &Context) -> bool {
     let writing = ctx.text_edit_focused();
     ctx.input_mut(|input| {
@@ -31,8 +31,8 @@ pub(super) fn role_pressed(ctx: &Context) -> Option<Role> {
     ctx.input(|input| Role::ALL.into_iter().find(|role| input.key_pressed(role.key())))
 }
 
-/// The commands whose keys were pressed, in their order; the presses of those that `may` be done are consumed. A key that means
-/// something in a text that is being entered is left to it, and one that a part of the window reads itself to that.
+/// The commands whose keys were pressed, in their order; presses of those that `may` run are consumed. A key with a function
+/// in the focused text field, or one that a part of the window reads itself, is left alone.
 pub(super) fn pressed(ctx: &Context, may: impl Fn(Action) -> bool) -> Vec<Action> {
     let writing = ctx.text_edit_focused();
     let mut actions = Vec::new();

@@ -1,4 +1,4 @@
-//! The state of the loop as known to the window: updated from ticks and events, read by every panel, changed by none.
+//! The window's copy of the loop's state: updated from ticks and events, read by every panel, changed by none.
 
 mod intake;
 
@@ -37,7 +37,7 @@ use super::{
     stiffness::ContactStiffness,
     text,
 };
-use crate::words::{loss_words, role_name};
+use crate::words::{loss_words, quoted, role_name};
 
 /// Period of the degree histograms, s.
 pub const DEGREES_S: f64 = 120.0;
@@ -48,35 +48,35 @@ const MARKS: usize = 100;
 /// Duration of the tip's trail, s, and time between its points.
 const TRAIL_S: f64 = 1.2;
 const TRAIL_STEP_S: f64 = 0.02;
-/// Figures are updated four times a second, so that they can be read.
+/// Figures are updated four times per second, so that they can be read.
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
 /// The two large force readings are updated more often.
 const READINGS_EVERY: Duration = Duration::from_millis(100);
-/// Blocks of what the devices have delivered that are kept, of 0.1 s each.
+/// Number of stored blocks of device readings, 0.1 s each.
 const BLOCKS_KEPT: usize = 40;
 /// How long a refused command is displayed.
 const REFUSAL_SHOWN: Duration = Duration::from_secs(6);
 
-/// A line that carries nothing, as a device that is missing: behind the last place of a roster.
+/// A link without data as a missing device, after the last one of the roster.
 fn missing_line(line: &dyn LineDoor) -> Option<Missing> {
     let [cause, cure] = line.trouble()?;
     let was_there = line.has_delivered();
     Some(Missing { place: DEVICES_MAX, name: text::link::LINK.get().to_owned(), was_there, cause, cure })
 }
 
-/// What is on the screen.
+/// Source of the displayed state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
-    /// The loop that runs.
+    /// The running loop.
     Now,
     /// A moment of a recorded session: nothing may act on the machine.
     Past,
-    /// A loop at another machine, which is only watched.
+    /// A loop at another machine, without control.
     Elsewhere,
 }
 
 impl Of {
-    /// Why controls that act on a machine are off.
+    /// Reason why controls that act on a machine are off.
     pub(in crate::console) fn blocked(self) -> &'static str {
         match self {
             Self::Elsewhere => text::monitor::BLOCKED.get(),
@@ -85,31 +85,24 @@ impl Of {
     }
 }
 
-/// A command that was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {
     /// The side that refused it.
     pub side: Side,
-    /// The command.
     pub command: Command,
-    /// The reason.
     pub why: Refusal,
 }
 
-/// The state of the loop as known to the window.
+/// The window's copy of the loop's state.
 #[derive(Debug)]
 pub struct Live {
-    /// The rig.
     pub rig: RigConfig,
-    /// The scene.
     pub scene: Scene,
-    /// What it is the state of.
     pub of: Of,
-    /// What the simulation told last of the objects of the scene.
+    /// The last report of the simulation about the objects of the scene.
     pub objects: Option<Objects>,
-    /// How far the training task of the scene has come.
+    /// Progress of the scene's training task.
     pub training: Option<Training>,
-    /// Newest tick of each side.
     pub ticks: [Option<Tick>; SIDES],
     /// Forces over time, of each side.
     pub history: [History; SIDES],
@@ -121,13 +114,13 @@ pub struct Live {
     pub degrees: DegreeShares,
     /// Degrees that the paper's in-window rule would choose.
     pub paper_degrees: DegreeShares,
-    /// Error of each mode at the horizon, N, one value per second, oldest first; no number while the force was not known.
+    /// Prediction error of each mode, N, one value per second, oldest first; NaN while the force was unknown.
     pub trend_n: VecDeque<[f64; SLOTS]>,
     /// Recent activity of each side's gates.
     pub gates: [Gates; SIDES],
     /// The last change of each side's state.
     pub changes: [Option<Change>; SIDES],
-    /// Stiffness of each side's present or last contact.
+    /// Stiffness of each side's current or last contact.
     pub stiffness: [ContactStiffness; SIDES],
     /// Smoothed figures for display.
     pub figures: Figures,
@@ -141,23 +134,22 @@ pub struct Live {
     pub rough_edges: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
-    /// No ready check of today has passed on this rig.
+    /// No ready check has passed on this rig today.
     pub is_unchecked: bool,
-    /// Why the loop cannot be engaged now, as the button has it; `None` where it can.
+    /// Reason why the loop cannot be engaged now, for the hover text of the button; `None` if it can.
     pub engage_closed: Option<&'static str>,
     /// The devices of the rig; empty if everything is simulated.
     pub roster: Roster,
-    /// Where nothing may act on the devices: their names, and how each is at the moment that is shown.
+    /// Names of the devices and their states at the moment shown, if nothing may act on the devices.
     pub devices_then: Vec<(DeviceName, Standing)>,
     /// Health of the devices, in the same order.
     pub healths: Healths,
-    /// The line to the machine with the arm, as long as that is another one.
+    /// The link to the machine with the arm, if it is another machine.
     pub(crate) line: Option<Box<dyn LineDoor>>,
-    /// What the devices have delivered in the last seconds, oldest first.
+    /// Device readings of the last seconds, oldest first.
     pub blocks: VecDeque<Box<Gauges>>,
-    /// Number of such blocks since the loop began.
+    /// Number of blocks since the loop started.
     pub blocks_counted: u64,
-    /// Which devices are being moved.
     pub(crate) activity: Activity,
     first_fault: Option<(f64, Fault)>,
     refusal: Option<(Instant, Refused)>,
@@ -179,7 +171,6 @@ pub struct Live {
 }
 
 impl Live {
-    /// Before the first tick.
     pub fn new(rig: RigConfig, scene: Scene) -> Self {
         let ticks = (DEGREES_S * rig.rate_hz) as usize;
         let now = Instant::now();
@@ -234,12 +225,12 @@ impl Live {
         }
     }
 
-    /// Before the first tick of a recorded session.
+    /// State of a recorded session before its first tick.
     pub fn of_past(rig: RigConfig, scene: Scene) -> Self {
         Self { of: Of::Past, ..Self::new(rig, scene) }
     }
 
-    /// Before the first tick of a loop at another machine, which is only watched.
+    /// State of a loop at another machine before its first tick, without control.
     pub fn of_elsewhere(rig: RigConfig, scene: Scene) -> Self {
         let devices = rig.device_names();
         let devices_then = devices.into_iter().map(|name| (name, Standing::Opening)).collect();
@@ -251,12 +242,12 @@ impl Live {
         self.of != Of::Now
     }
 
-    /// Records that a tick arrived at this moment and waits to be read: the loop is not silent.
+    /// Records that a tick arrived at this time and waits to be read: the loop is not silent.
     pub fn heard(&mut self, at: Instant) {
         self.tick_at = self.tick_at.max(at);
     }
 
-    /// Least time between redrawing moving parts, s: on a slow computer every second frame.
+    /// Minimum time between redraws of moving parts, s: on a slow computer every second frame.
     pub const fn least_step_s(&self) -> f64 {
         if self.rough_edges { 1.0 / 15.0 } else { 0.0 }
     }
@@ -277,12 +268,12 @@ impl Live {
         &self.work
     }
 
-    /// Time from the arrival of a measurement until the force computed from it was given to the device.
+    /// Time from the arrival of a measurement to the output of the force computed from it.
     pub const fn sample_to_force(&self) -> &Percentiles {
         &self.sample_to_force
     }
 
-    /// Sets a mark at the present time.
+    /// Sets a mark at the current time.
     pub fn mark(&mut self) {
         let Some(tick) = self.first_tick() else { return };
         let t_s = tick.t_s;
@@ -292,86 +283,79 @@ impl Live {
         }
     }
 
-    /// Shows these objects of the scene, with how far the task has come; none where they are not known.
+    /// Shows these objects of the scene, with the progress of the task; none if unknown.
     pub fn show_objects(&mut self, objects: Option<Objects>) {
         self.training = objects.as_ref().and_then(|objects| objects.task.as_ref()).map(training);
         self.objects = objects;
     }
 
-    /// The same, if there is something newer.
+    /// Like [`Live::show_objects`], if there are newer objects.
     pub fn show_newer_objects(&mut self, objects: Option<Objects>) {
         if objects.is_some() {
             self.show_objects(objects);
         }
     }
 
-    /// Newest tick of this side.
     pub const fn tick_of(&self, side: Side) -> Option<&Tick> {
         self.ticks[side.index()].as_ref()
     }
 
-    /// Newest tick of the right arm pair, used for everything that is common to both.
+    /// Newest tick of the right arm pair, for everything that both pairs share.
     pub const fn first_tick(&self) -> Option<&Tick> {
         self.tick_of(Side::Right)
     }
 
-    /// Whether every mode is computed, to compare them.
+    /// Whether all modes are computed to compare them.
     pub fn compares(&self) -> bool {
         self.first_tick().is_some_and(|tick| Mode::ALL.into_iter().all(|mode| tick.identification.modes.contains(mode)))
     }
 
-    /// The arm pairs of the loop; the right one always exists.
     pub fn sides(&self) -> impl Iterator<Item = Side> {
         Side::ALL.into_iter().filter(|&side| side == Side::Right || self.is_bimanual())
     }
 
-    /// Whether there are two arm pairs.
     pub const fn is_bimanual(&self) -> bool {
         self.scene.left.is_some() || self.tick_of(Side::Left).is_some()
     }
 
-    /// Last state of the loop; with two arm pairs the one that needs more attention; idle before the first tick.
+    /// Last state of the loop; with two arm pairs, the state that needs more attention; idle before the first tick.
     pub fn state(&self) -> LoopState {
         let states = self.ticks.iter().flatten().map(|tick| tick.state);
         states.max_by_key(|state| attention(*state)).unwrap_or(LoopState::Idle)
     }
 
-    /// The fault that came first, while one is latched.
+    /// The fault that occurred first, while one is latched.
     pub fn first_fault(&self) -> Option<Fault> {
         self.first_fault.map(|(_, fault)| fault)
     }
 
-    /// Present mode.
     pub fn mode(&self) -> Mode {
         self.first_tick().map_or(self.rig.mode, |tick| tick.mode)
     }
 
-    /// Present gain.
     pub fn gain(&self) -> f64 {
         self.first_tick().map_or(self.rig.gates.gain, |tick| tick.gates.gain)
     }
 
-    /// Present delay, s.
+    /// Current delay, s.
     pub fn delay_s(&self) -> f64 {
         self.first_tick().map_or(self.rig.delay_s, |tick| tick.delay_s)
     }
 
-    /// The last refused command, for some seconds.
     pub fn refusal(&self) -> Option<Refused> {
         self.refusal.filter(|(at, _)| at.elapsed() < REFUSAL_SHOWN).map(|(_, refused)| refused)
     }
 
-    /// Present settings of the gates.
     pub fn gate_settings(&self) -> ChainSettings {
         self.first_tick().map_or(self.rig.gates, |tick| tick.gate_settings)
     }
 
-    /// Stiffness of the stiffer of both hands' present or last contacts, N/m: the gain is common to both.
+    /// Stiffness of the stiffer current or last contact of both hands, N/m: the gain is common to both.
     pub fn stiffness_n_m(&self) -> Option<f64> {
         self.stiffness.iter().filter_map(ContactStiffness::n_m).max_by(f64::total_cmp)
     }
 
-    /// What is wanted and does not deliver: the line to the other machine, then devices in the order of the roster.
+    /// Required parts that do not deliver: the link to the other machine, then devices in the order of the roster.
     pub fn missing(&self) -> impl Iterator<Item = Missing> {
         self.line.as_deref().and_then(missing_line).into_iter().chain(self.missing_devices())
     }
@@ -384,7 +368,7 @@ impl Live {
                 Standing::Lost(_) => true,
             };
             let (cause, cure) = match (entry.view.report().trouble, health.standing) {
-                (Some(trouble), _) => (trouble.to_string(), trouble.cure()),
+                (Some(trouble), _) => (quoted(&trouble), trouble.cure()),
                 (None, Standing::Lost(loss)) => {
                     (loss_words(loss).to_owned(), text::alarms::DEVICE_MISSING_CURE.get().to_owned())
                 }
@@ -395,7 +379,7 @@ impl Live {
         })
     }
 
-    /// The data from which alarms are determined.
+    /// Input of the alarms.
     pub fn signs(&self, stop_is_stuck: bool, unrecorded: Option<String>) -> Signs {
         Signs {
             missing: self.missing().collect(),

@@ -12,13 +12,13 @@ use super::{
 };
 use crate::language::{Language, Text};
 
-/// Size that every view needs, in points; a larger scale than the window has space for is not used.
+/// Size that every view needs, in points; a scale without room for it is not used.
 const NEEDED: egui::Vec2 = vec2(1100.0, 680.0);
 
-/// Size of a button beside its name: the menu must not be higher than the smallest window.
+/// Size of a button next to its name: the menu must fit in the smallest window.
 const CHOICE: egui::Vec2 = vec2(84.0, 24.0);
 
-/// The menu in the top bar; returns the command that was chosen in it. `can_undo` tells whether something can be taken back, and made again.
+/// The menu in the top bar; returns the chosen command. `can_undo`: whether undo and redo are possible.
 pub(super) fn menu_ui(
     ui: &mut Ui,
     settings: &mut Settings,
@@ -77,14 +77,14 @@ pub(super) fn menu_ui(
     wanted
 }
 
-/// A command with its keys, on a button of this width at least; returns it when it is pressed.
+/// A command with its keys, on a button of at least this width; returns the command when pressed.
 fn entry_ui(ui: &mut Ui, action: Action, width: f32) -> Option<Action> {
     let entry = Entry::of(action)?;
     let button = ui.add(Button::new(entry.with_keys()).min_size(vec2(width, 30.0)));
     button.on_hover_text(entry.does).clicked().then_some(action)
 }
 
-/// The languages, each by its name in itself; returns the command of the one that is pressed.
+/// The languages by their own names; returns the command of the pressed one.
 fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     let mut wanted = None;
     ui.horizontal(|ui| {
@@ -99,13 +99,13 @@ fn languages_ui(ui: &mut Ui, now: Language) -> Option<Action> {
     wanted
 }
 
-/// A switch that is now so; returns its command when it is pressed.
+/// A switch in its current state; returns its command when pressed.
 fn switch_ui(ui: &mut Ui, mut on: bool, action: Action) -> Option<Action> {
     let entry = Entry::of(action)?;
     ui.checkbox(&mut on, entry.title.as_str()).on_hover_text(entry.does).changed().then_some(action)
 }
 
-/// Switch for alarm sounds, and why they cannot be played.
+/// Switch for alarm sounds, and the reason why they cannot be played.
 fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
     let wanted = switch_ui(ui, on, Action::Sound);
     if let Some(trouble) = alarms.sound.trouble() {
@@ -114,7 +114,7 @@ fn sound_ui(ui: &mut Ui, on: bool, alarms: &mut Alarms) -> Option<Action> {
     wanted
 }
 
-/// How the endoscope's picture is shown, and whether it is recorded.
+/// Display settings of the endoscope image, and whether it is recorded.
 fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
     ui.label(text::menu::PICTURE.get());
     let picture = &mut settings.picture;
@@ -143,7 +143,7 @@ fn picture_ui(ui: &mut Ui, settings: &mut Settings) -> Option<Action> {
     forces.or(plain).or(switch_ui(ui, settings.records_picture, Action::RecordsPicture))
 }
 
-/// Switches for the panels on the desk.
+/// Switches for the panels.
 fn panels_ui(ui: &mut Ui, layout: &Layout) -> Option<Action> {
     let mut wanted = None;
     ui.label(text::menu::PANELS.get()).on_hover_text(text::menu::PANELS_HOVER.get());

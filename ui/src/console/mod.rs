@@ -1,8 +1,8 @@
-//! The operator's window on one running loop.
+//! The operator's window for one running loop.
 //!
-//! Receives ticks and events through a [`Handle`](nima_machine::runtime::Handle) and sends commands through it. Panels never change the loop directly;
-//! they show what the ticks report and put the operator's commands into an outbox. All panels are plain functions of
-//! [`live::Live`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
+//! Receives ticks and events through a [`Handle`](nima_machine::runtime::Handle) and sends commands through it. Panels never
+//! change the loop directly; they show the content of the ticks and put the operator's commands into an outbox. All panels
+//! are plain functions of [`live::Live`], so they can be tested without a screen. Only `scene3d/gl.rs` uses the GPU.
 
 mod activity;
 pub mod alarms;
@@ -68,33 +68,25 @@ use crate::{emulators::Emulators, leaving::Leave};
 /// Options of the window, for screenshots and tests. By default it stays open until it is closed.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Close the window after this time.
     pub exit_after: Option<Duration>,
-    /// Save a screenshot (PNG) just before the window closes by itself (or after three seconds if it does not).
+    /// Save a screenshot (PNG) just before the window closes automatically (or after three seconds if it does not).
     pub screenshot: Option<PathBuf>,
     /// Take screenshots of every view, then close.
     pub pictures: Option<pictures::Album>,
-    /// Start in this role instead of the last one.
     pub role: Option<roles::Role>,
-    /// Use this language instead of the last one.
     pub language: Option<Language>,
-    /// Show this recorded session at the start.
     pub session: Option<PathBuf>,
-    /// Open this wizard at the start.
     pub wizard: Option<wizards::Which>,
-    /// Write the loop's figures to this file when the window is closed.
     pub summary: Option<PathBuf>,
-    /// Write the cost of the window to this file when it is closed.
     pub frames: Option<PathBuf>,
     /// Initial length of the traces, s.
     pub traces_s: Option<f64>,
     /// Block the window for this time, once.
     pub stall: Option<Duration>,
-    /// Requests to end the console.
     pub leave: Leave,
 }
 
-/// What runs when the console opens.
+/// The state in which the console opens.
 #[derive(Debug)]
 pub(crate) struct Begun {
     pub(crate) choice: Choice,
@@ -103,7 +95,7 @@ pub(crate) struct Begun {
     pub(crate) rig: RigConfig,
     pub(crate) scene: Scene,
     pub(crate) sessions: Sessions,
-    /// The line to the machine with the arm, if it is at another one, and how it is opened again.
+    /// The link to the machine with the arm, if it is another machine, and the means to reopen it.
     pub(crate) far: Option<(Box<dyn LineDoor>, Reopen)>,
 }
 
@@ -111,7 +103,7 @@ pub(crate) struct Begun {
 pub(crate) fn run(begun: Begun, options: Options) -> anyhow::Result<()> {
     let create: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(console(cc, begun, options))));
     let ended = open_window(text::top_bar::NIMA_CONSOLE.get(), create);
-    // What is told from here on is told on the terminal.
+    // Messages from here on go to the terminal.
     language::set(Language::English);
     ended
 }
@@ -127,8 +119,7 @@ pub(crate) fn open_window(title: &str, create: eframe::AppCreator<'_>) -> anyhow
         viewport,
         renderer: eframe::Renderer::Glow,
         depth_buffer: 24,
-        // Only useful for gradients, which egui does not draw here; with a software renderer it costs time for every
-        // pixel.
+        // Only useful for gradients, which egui does not draw here; with a software renderer it costs time for every pixel.
         dithering: false,
         centered: true,
         ..Default::default()
@@ -156,16 +147,16 @@ pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     words
 }
 
-/// No window could be opened: there is no display, or no usable OpenGL.
+/// No window could be opened: no display, or no usable OpenGL.
 #[derive(Debug, thiserror::Error)]
 #[error("{reason}")]
 pub struct NoWindow {
-    /// Message of the window system (its error type cannot be sent between threads).
+    /// Message of the window system, whose error type cannot be sent between threads.
     pub reason: String,
 }
 
 impl NoWindow {
-    /// The message without the position in the source code with which it may begin.
+    /// The message without the source position at its start.
     fn new(words: &str) -> Self {
         let after_place = words.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
         Self { reason: after_place.map_or(words, |(_, reason)| reason).to_owned() }

@@ -1,6 +1,6 @@
-//! A window that only shows a rig at another machine: the second screen of the surgeon, a teacher's screen.
+//! A window that only shows a rig at another machine, for example on the surgeon's second screen or a teacher's screen.
 //!
-//! The views are those of the console, fed by what the rig sends. What they would send to a machine is thrown away: there is no way back.
+//! The views are those of the console, with data from the rig. Their commands are discarded: there is no connection back.
 
 use std::{
     path::PathBuf,
@@ -32,32 +32,30 @@ use crate::language::{self, Language};
 use crate::telling::tell;
 
 const HEAD: f32 = 72.0;
-/// A demonstration leads its rig, which a monitor cannot.
+/// A demonstration drives its rig, which a monitor cannot.
 const ROLES: [Role; 2] = [Role::Surgeon, Role::Technician];
 const SWITCH: egui::Vec2 = egui::vec2(150.0, 40.0);
-/// Width of the frame.
 const FRAME: f32 = 4.0;
-/// Nothing new for this long is told, s.
+/// Silence of this length is shown, s.
 const SILENT_S: f64 = 1.0;
-/// Interval between frames: about thirty a second.
+/// Interval between frames: about thirty per second.
 const EVERY: Duration = Duration::from_millis(31);
 /// Time to take the screenshot before the window closes.
 const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
 
-/// What comes from the rig.
+/// Data from the rig.
 #[derive(Debug)]
 pub enum Heard {
-    /// A loop of this rig runs there.
+    /// A loop of this rig is running there.
     Runs(Box<RigConfig>, Box<Scene>),
-    /// No loop runs there.
+    /// No loop is running there.
     Rests,
-    /// What its screen shows.
     Shows(Vec<Moment>),
-    /// Why nothing comes.
+    /// Reason for missing data.
     Trouble(String),
 }
 
-/// For whoever hears from the rig; each call wakes the window.
+/// Sends data from the rig to the window; each call wakes the window.
 #[derive(Clone, Debug)]
 pub struct Teller {
     to: Sender<Heard>,
@@ -65,7 +63,7 @@ pub struct Teller {
 }
 
 impl Teller {
-    /// Tells the window. False when it is closed.
+    /// Returns false after the window was closed.
     pub fn tell(&self, heard: Heard) -> bool {
         let told = self.to.send(heard).is_ok();
         self.ctx.request_repaint();
@@ -73,31 +71,25 @@ impl Teller {
     }
 }
 
-/// Options of the window.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The view.
     pub role: Role,
-    /// The language.
     pub language: Language,
-    /// Close after this time.
     pub exit_after: Option<Duration>,
-    /// Save a screenshot just before that.
     pub screenshot: Option<PathBuf>,
 }
 
-/// The window.
 #[derive(Debug)]
 pub struct Monitor {
     rig: String,
     came: Receiver<Heard>,
     live: Option<Box<Live>>,
     trouble: Option<String>,
-    /// When something new was last shown.
+    /// Time of the last new data.
     heard: Instant,
     panels: Panels,
     in_force: InForce,
-    /// Takes what the views would tell a machine; it is never sent.
+    /// Receives the commands of the views; they are never sent.
     outbox: Outbox,
     settings: Settings,
     options: Options,
@@ -106,7 +98,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A window for the rig of this name, and who tells it.
+    /// Creates a window for the rig of this name, and the sender of its data.
     pub fn new(cc: &eframe::CreationContext<'_>, rig: &str, options: Options) -> (Self, Teller) {
         theme::apply(&cc.egui_ctx);
         let (to, came) = unbounded();
@@ -128,7 +120,6 @@ impl Monitor {
         (monitor, Teller { to, ctx: cc.egui_ctx.clone() })
     }
 
-    /// What is shown.
     pub fn live(&self) -> Option<&Live> {
         self.live.as_deref()
     }
@@ -165,7 +156,7 @@ impl Monitor {
         self.live.as_ref().and_then(|live| live.first_tick()).map_or(0.0, |tick| tick.t_s)
     }
 
-    /// Why what is shown is old.
+    /// Reason why the display is out of date.
     fn stale(&self) -> Option<String> {
         let seconds = self.heard.elapsed().as_secs_f64();
         let silent = self.live.is_some() && seconds > SILENT_S;
@@ -200,7 +191,7 @@ impl Monitor {
         });
     }
 
-    /// Why what is shown is old, or else the alarm at the rig.
+    /// Reason why the display is out of date, otherwise the alarm at the rig.
     fn words_ui(&self, ui: &mut Ui, stale: Option<String>) {
         let alarm = || {
             let alarm = judge(&self.live.as_ref()?.signs(false, None)).into_iter().next()?;
@@ -276,10 +267,9 @@ impl eframe::App for Monitor {
     }
 }
 
-/// Opens the window; `begin` starts whoever tells it. Returns when it is closed.
+/// Opens the window; `begin` starts the source of its data. Returns when the window is closed.
 ///
-/// # Errors
-/// If no window can be opened.
+/// # Errors Returns an error if no window can be opened.
 pub fn open(rig: &str, options: Options, begin: impl FnOnce(Teller)) -> anyhow::Result<()> {
     let title = language::with(options.language, || text::monitor::title(rig));
     let create: eframe::AppCreator<'_> = Box::new(|cc| {

@@ -5,7 +5,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// What opens a file on this desktop.
+/// Program that opens a file on this desktop.
 const OPENER: &[&str] = if cfg!(target_os = "macos") {
     &["open"]
 } else if cfg!(windows) {
@@ -14,7 +14,8 @@ const OPENER: &[&str] = if cfg!(target_os = "macos") {
     &["xdg-open"]
 };
 
-/// Opens it; false if there is no program that does. It may wait for as long as that program runs, so not on the window's thread.
+/// Returns false if no program can open the file. May block for as long as that program runs, so do not call it on the
+/// window's thread.
 pub(crate) fn open(path: &Path) -> bool {
     open_with(OPENER, path)
 }
@@ -26,7 +27,7 @@ fn open_with(opener: &[&str], path: &Path) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-// With a program that every Unix has.
+// Uses a program that every Unix has.
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;

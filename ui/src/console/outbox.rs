@@ -6,15 +6,15 @@ use nima_machine::{messages::Command, runtime::Handle};
 #[derive(Debug, Default)]
 pub struct Outbox {
     waiting: Vec<Command>,
-    /// Stops that a person asked for.
+    /// Stops requested by a person.
     stops: u64,
-    /// A stop could not be put into the loop's queue.
+    /// A stop did not fit into the loop's queue.
     stop_refused: bool,
 }
 
 impl Outbox {
-    /// Adds a command. A newer value of a setting replaces a waiting one, so that dragging a slider does not fill the
-    /// loop's queue. A stop removes all waiting commands, because none of them is wanted any more.
+    /// Adds a command. A newer value of a setting replaces a waiting one, so that dragging a slider does not fill the loop's
+    /// queue. A stop removes all waiting commands.
     pub fn push(&mut self, command: Command) {
         if command == Command::Stop {
             self.waiting.clear();
@@ -24,13 +24,12 @@ impl Outbox {
         self.waiting.push(command);
     }
 
-    /// Sends commands while the loop's queue has room; the others wait for the next frame. Without a loop nothing is
-    /// sent.
+    /// Sends commands while the loop's queue has room; the others wait for the next frame. Without a loop nothing is sent.
     pub fn flush(&mut self, handle: Option<&Handle>) {
         self.flush_into(|command| handle.is_some_and(|handle| handle.send(command)));
     }
 
-    /// The waiting commands, which count as sent.
+    /// Returns the waiting commands as sent.
     #[cfg(test)]
     pub(in crate::console) fn sent(&mut self) -> Vec<Command> {
         std::mem::take(&mut self.waiting)
@@ -42,45 +41,45 @@ impl Outbox {
         self.stop_refused = self.holds_stop();
     }
 
-    /// Leaves out all waiting commands but a stop.
+    /// Drops all waiting commands except a stop.
     pub fn only_stop(&mut self) {
         self.waiting.retain(|command| *command == Command::Stop);
     }
 
-    /// Leaves out a delay of the link: over a network it is measured, and the loop would refuse it.
+    /// Drops a delay of the link: over a network it is measured, and the loop would refuse it.
     pub fn without_delay(&mut self) {
         self.waiting.retain(|command| !matches!(command, Command::SetDelay(_)));
     }
 
-    /// Leaves out all waiting commands.
+    /// Drops all waiting commands.
     pub fn forget(&mut self) {
         self.waiting.clear();
     }
 
-    /// Whether a stop is waiting.
     pub fn holds_stop(&self) -> bool {
         self.waiting.contains(&Command::Stop)
     }
 
-    /// Number of stops that a person asked for: every stop of the window is a person's, and the loop ignores one under a latched fault.
+    /// Number of stops requested by a person. Every stop of the window is a person's, and the loop ignores a stop under a
+    /// latched fault.
     pub const fn stops(&self) -> u64 {
         self.stops
     }
 
-    /// Whether the loop's queue had no room for a stop, which the operator must know. Not yet true in the frame of the
+    /// Whether the loop's queue had no room for a stop, which the operator must be told. Not yet true in the frame of the
     /// request.
     pub const fn stop_is_stuck(&self) -> bool {
         self.stop_refused
     }
 }
 
-/// Whether a command that waits is of no use any more with this newer one: it is for the same thing of the same side.
+/// Whether this newer command makes a waiting one obsolete: both concern the same setting of the same side.
 fn is_outdated(old: &Command, newer: Command) -> bool {
     match (*old, newer) {
         (Command::Guide(old, _), Command::Guide(newer, _)) | (Command::Grip(old, _), Command::Grip(newer, _)) => {
             old == newer
         }
-        // Each is done.
+        // All of them are sent.
         (Command::Task(..), Command::Task(..)) => false,
         (old, newer) => std::mem::discriminant(&old) == std::mem::discriminant(&newer),
     }

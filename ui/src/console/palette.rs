@@ -1,7 +1,7 @@
-//! The palette: all commands that can be reached from here, found by their names.
+//! The command palette: all commands that are available here, found by name.
 //!
-//! It does what the button or the key of a command does, on the same way. What leads towards motion and force is asked once more, because a
-//! word and Enter are typed faster than a button is found.
+//! A command runs as from its button or key. Commands that lead towards motion and force need a confirmation, because a word
+//! and Enter are typed faster than a button is found.
 
 use egui::{
     Align, Align2, Button, Context, Id, Key, Label, Order, Rect, RichText, ScrollArea, TextEdit, Ui, Window, vec2,
@@ -17,23 +17,21 @@ use super::{
 const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
 
-/// A command, and whether it can be done now.
+/// A command, and its availability.
 pub(super) type Row = (&'static Entry, Reach);
 
-/// The palette.
 #[derive(Debug, Default)]
 pub(super) struct Palette {
     open: Option<Search>,
     chosen: Option<Action>,
 }
 
-/// What is looked for.
 #[derive(Debug, Default)]
 struct Search {
     words: String,
-    /// The row that Enter takes; the first that can be done, until an arrow key was pressed.
+    /// The row that Enter runs; the first available one until an arrow key was pressed.
     at: Option<usize>,
-    /// What was asked once.
+    /// A command that waits for confirmation.
     asked: Option<Action>,
 }
 
@@ -50,12 +48,12 @@ impl Palette {
         self.open = None;
     }
 
-    /// What was chosen since the last frame.
+    /// The command chosen since the last frame.
     pub(super) const fn take(&mut self) -> Option<Action> {
         self.chosen.take()
     }
 
-    /// Draws it into `room` with these rows.
+    /// Draws the palette into `room` with these rows.
     pub(super) fn ui(&mut self, ctx: &Context, room: Rect, rows: &[Row]) {
         let Some(search) = &mut self.open else { return };
         let field = Id::unique("palette_field");
@@ -98,7 +96,7 @@ impl Palette {
     }
 }
 
-/// Keys of the list, which its field does not get.
+/// Keys of the list, which its text field does not get.
 #[derive(Debug)]
 struct Keys {
     by: isize,
@@ -117,7 +115,7 @@ impl Keys {
 }
 
 impl Search {
-    /// Goes to the next row that can be done.
+    /// Moves to the next available row.
     fn step(&mut self, keys: &Keys, found: &[Row]) {
         let possible: Vec<usize> = (0..found.len()).filter(|&i| found[i].1 == Reach::Can).collect();
         let at = self.at.and_then(|at| possible.iter().position(|&i| i == at)).unwrap_or(0);
@@ -129,11 +127,11 @@ impl Search {
         self.at = possible.get(next).copied();
     }
 
-    /// The rows; returns what is to be done.
+    /// Draws the rows; returns the command to run.
     fn list_ui(&self, ui: &mut Ui, found: &[Row], keys: &Keys, height: f32) -> Option<Action> {
         let mut wanted = None;
         let height = height.clamp(120.0, 480.0);
-        // The window is as high as what is in it, so that nothing else gives the list its height.
+        // The window is as high as its content, so nothing else gives the list its height.
         let list = ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink([false, true]);
         list.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
@@ -159,7 +157,7 @@ impl Search {
 }
 
 fn row_ui(ui: &mut Ui, entry: &Entry, reach: Reach, is_at: bool) -> egui::Response {
-    // Weak words cannot be read on the colour of what is selected.
+    // Weak text is unreadable on the selection colour.
     let ink = if is_at { theme::now().text } else { theme::now().text_weak };
     let keys = RichText::new(entry.keys_told()).color(ink);
     let button = Button::selectable(is_at, entry.title.as_str()).right_text(keys).truncate();
@@ -172,7 +170,7 @@ fn row_ui(ui: &mut Ui, entry: &Entry, reach: Reach, is_at: bool) -> egui::Respon
     response.on_hover_text(hover(entry.does, entry.place.name()))
 }
 
-/// The rows in whose names every one of these words is found, the best first; of equal ones those that can be done, in the order of the
+/// Rows whose names contain all these words, best match first; equal matches with available rows first, in the order of the
 /// table.
 fn found(words: &str, rows: &[Row]) -> Vec<Row> {
     let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
@@ -182,7 +180,8 @@ fn found(words: &str, rows: &[Row]) -> Vec<Row> {
     found.into_iter().map(|(_, row)| row).collect()
 }
 
-/// How well a word fits: 0 is best. It is a key, begins a word of the name, stands in the name, or begins a word of the meaning.
+/// Quality of a match; 0 is best. A word can match a key, the start of a word in the name, a part of the name, or the start
+/// of a word in the meaning.
 fn rank(word: &str, entry: &Entry) -> Option<usize> {
     let begins = |text: &str| {
         let text = text.to_lowercase();

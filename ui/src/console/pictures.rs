@@ -42,7 +42,7 @@ const SHOTS: [(&str, Role, Option<Panel>, bool); 5] = [
     ("demo", Role::Demo, None, false),
 ];
 
-/// Folder of the screenshots, and how many have been saved.
+/// Folder of the screenshots, and the number of saved ones.
 #[derive(Clone, Debug)]
 pub struct Album {
     folder: PathBuf,
@@ -50,18 +50,17 @@ pub struct Album {
 }
 
 impl Album {
-    /// Screenshots in this folder, which must exist.
+    /// The folder must exist.
     pub fn new(folder: &Path) -> Self {
         Self { folder: folder.to_path_buf(), saved: Arc::default() }
     }
 
-    /// Whether all screenshots were saved.
     pub fn is_complete(&self) -> bool {
         self.saved.load(Ordering::Relaxed) == SHOTS.len()
     }
 }
 
-/// The next screenshot, and since when its view has been shown.
+/// The next screenshot, and the time since which its view has been shown.
 #[derive(Debug)]
 pub(super) struct Photographer {
     album: Album,

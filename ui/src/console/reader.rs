@@ -1,4 +1,4 @@
-//! Who reads the wizards' instructions besides the person in front of the screen: the technician of an emulated rig.
+//! Follows the wizards' instructions instead of a person: the technician of an emulated rig.
 
 use std::sync::Arc;
 
@@ -6,17 +6,17 @@ use nima_simulation::screen::{Screen, Task};
 
 use super::wizards::{Kind, Which};
 
-/// Takes what the screen shows. Clones are the same reader.
+/// Receives the content of the screen. Clones are the same reader.
 #[derive(Clone)]
 pub struct Reader(Arc<dyn Fn(&Screen) + Send + Sync>);
 
 impl Reader {
-    /// A reader that is shown every change of the screen.
+    /// `reads` is called with every change of the screen.
     pub fn new(reads: impl Fn(&Screen) + Send + Sync + 'static) -> Self {
         Self(Arc::new(reads))
     }
 
-    /// Shows the screen; nothing happens if it is the one that was shown `last`.
+    /// Shows the screen unless it equals the `last` one.
     pub fn show(&self, screen: Screen, last: &mut Option<Screen>) {
         if *last != Some(screen) {
             (self.0)(&screen);
@@ -31,12 +31,12 @@ impl std::fmt::Debug for Reader {
     }
 }
 
-/// What an open wizard asks of the person at the arm.
+/// Task of an open wizard for the person at the arm.
 pub const fn task_of(open: Option<Which>) -> Task {
     match open {
         // The emulators' technician has no board.
         None | Some(Which::Camera) => Task::Surgery,
-        // Both take poses in all directions of gravity.
+        // Both record poses in all directions of gravity.
         Some(Which::Gravity | Which::Frame(Kind::Mount)) => Task::Gravity,
         Some(Which::Correspondence) => Task::Correspondence,
         Some(Which::TipForce) => Task::TipForce,

@@ -12,38 +12,35 @@ use nima_machine::{
 
 use super::rolling::Fading;
 
-/// Recent activity of the gates.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gates {
-    /// Share of recent ticks in which each gate acted, indexed by [`Gate::index`].
+    /// Fraction of recent ticks in which each gate acted, indexed by [`Gate::index`].
     acting: [Fading; GATES],
     /// Force withheld by the dead band, N.
     pub withheld_n: Fading,
-    /// Share of the force that the governor keeps from the handle, lately.
+    /// Recent fraction of the force that the governor withholds.
     pub governed: Fading,
 }
 
-/// How an arm pair entered its present state.
+/// How an arm pair entered its current state.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
     /// Time, s on the loop's clock.
     pub t_s: f64,
-    /// Previous state.
     pub from: LoopState,
-    /// Reason.
     pub why: Why,
 }
 
 /// Figures for display, smoothed so that they can be read.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
-    /// Mean magnitude of the measured force of each side, N, indexed by `Side::index`; `None` while it is not known.
+    /// Mean magnitude of the measured force of each side, N, indexed by `Side::index`; `None` while it is unknown.
     pub measured_n: [Option<f64>; SIDES],
     /// Mean magnitude of the rendered force of each side, N.
     pub rendered_n: [f64; SIDES],
     /// Torque about the shaft of each side, Nm.
     pub twist: [Twist; SIDES],
-    /// Error of each mode at the horizon, N, mean over the last seconds; `None` while the force at the tip is not known.
+    /// Prediction error of each mode, N, mean over the last seconds; `None` while the tip force is unknown.
     pub horizon_n: [Option<f64>; SLOTS],
     /// Lateness of wake-ups, us.
     pub wake_us: Quantiles,
@@ -59,12 +56,12 @@ pub struct Figures {
     pub frame_work_ms: f64,
 }
 
-/// Torque about the shaft, Nm, positive against the clock as seen from the trocar. `None` where it is not known.
+/// Torque about the shaft, Nm, positive counter-clockwise as seen from the trocar; `None` if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
-    /// Of what the jaws hold or touch.
+    /// Torque of the object that the jaws hold or touch.
     pub jaws_nm: Option<f64>,
-    /// On the wrist sensor, as read.
+    /// Torque on the wrist sensor, as read.
     pub wrist_nm: Option<f64>,
 }
 
@@ -77,12 +74,12 @@ impl Gates {
         self.governed.push(tick.gates.governed, dt_s, 0.15);
     }
 
-    /// Share of recent ticks in which this gate acted.
+    /// Fraction of recent ticks in which this gate acted.
     pub fn share(&self, gate: Gate) -> f64 {
         self.acting[gate.index()].get()
     }
 
-    /// Whether it acted in most of them.
+    /// Whether it acted in most recent ticks.
     pub fn closed(&self, gate: Gate) -> bool {
         self.share(gate) > 0.5
     }

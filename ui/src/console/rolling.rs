@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 /// Number of degrees, including 0 for "none".
 pub const DEGREES: usize = nima_core::impedance::MAX_DEGREE + 1;
 
-/// How often each degree was chosen in the last `capacity` ticks.
+/// Number of times each degree was chosen in the last `capacity` ticks.
 #[derive(Clone, Debug)]
 pub struct DegreeShares {
     chosen: VecDeque<u8>,
@@ -14,12 +14,11 @@ pub struct DegreeShares {
 }
 
 impl DegreeShares {
-    /// Statistics over this many ticks.
     pub fn new(capacity: usize) -> Self {
         Self { chosen: VecDeque::with_capacity(capacity), counts: [0; DEGREES], capacity: capacity.max(1) }
     }
 
-    /// Adds one choice; an invalid degree is left out.
+    /// Adds one choice; an invalid degree is ignored.
     pub fn push(&mut self, degree: u8) {
         let Some(count) = self.counts.get_mut(usize::from(degree)) else { return };
         *count += 1;
@@ -31,26 +30,25 @@ impl DegreeShares {
         }
     }
 
-    /// Share of each degree, 0 to 1; zeros before the first.
+    /// Fraction of each degree, 0 to 1; zeros before the first.
     pub fn shares(&self) -> [f64; DEGREES] {
         let total = self.chosen.len().max(1) as f64;
         self.counts.map(|count| f64::from(count) / total)
     }
 
-    /// Share of degrees 2 and above, 0 to 1.
+    /// Fraction of degrees 2 and above, 0 to 1.
     pub fn nonlinear(&self) -> f64 {
         self.shares().iter().skip(2).sum()
     }
 }
 
-/// An exponentially weighted mean.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fading {
     value: Option<f64>,
 }
 
 impl Fading {
-    /// Adds a value that was valid for `dt_s`; a value that is not finite is left out.
+    /// Adds a value that was valid for `dt_s`; a non-finite value is ignored.
     pub fn push(&mut self, value: f64, dt_s: f64, constant_s: f64) {
         if !value.is_finite() {
             return;
@@ -59,12 +57,12 @@ impl Fading {
         self.value = Some(self.value.map_or(value, |old| old + share * (value - old)));
     }
 
-    /// The present mean; `None` before the first value.
+    /// The current mean; `None` before the first value.
     pub const fn known(self) -> Option<f64> {
         self.value
     }
 
-    /// The present mean; zero before the first value.
+    /// The current mean; zero before the first value.
     pub fn get(self) -> f64 {
         self.value.unwrap_or(0.0)
     }

@@ -1,4 +1,4 @@
-//! Saves what the window shows as a PNG file.
+//! Saves the content of the window as a PNG file.
 
 use std::{io, path::Path};
 
@@ -7,7 +7,7 @@ use egui::ColorImage;
 use image::{ExtendedColorType, ImageEncoder as _, codecs::png::PngEncoder};
 use nima_files::write_atomically;
 
-/// Writes the picture, opaque, as 8-bit RGBA.
+/// Writes the image, opaque, as 8-bit RGBA.
 pub fn save(path: &Path, picture: &ColorImage) -> anyhow::Result<()> {
     let [width, height] = picture.size;
     let pixels: Vec<u8> = picture.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b(), 255]).collect();

@@ -1,7 +1,7 @@
-//! The session that is being recorded: begun with every loop that the console runs, without being asked.
+//! The session that is being recorded. Recording starts automatically with every loop of the console.
 //!
-//! A key or a button keeps it; what nobody keeps makes room for later sessions. A recording that ends by itself (a full disk, a folder
-//! that is gone) is told, and the loop runs on.
+//! A key or a button keeps the session; sessions that are not kept are deleted to make room. If a recording ends on its own
+//! (full disk, missing folder), the operator is informed, and the loop continues.
 
 use std::{
     collections::VecDeque,
@@ -32,33 +32,32 @@ use crate::{
     words,
 };
 
-/// A loop that ran for fewer ticks than this was no session: a window that could not be opened, a rig that was changed at once.
+/// A loop with fewer ticks than this is not a session, for example if no window could be opened or the rig was changed at
+/// once.
 const LEAST_TICKS: u64 = 1000;
-/// How often room is made while a session grows.
+/// Interval at which room is made while a session grows.
 const ROOM_EVERY: Duration = Duration::from_secs(30);
-/// A disk that does not answer for this long is told: a second later entries are lost.
+/// A disk that does not respond for this long is reported: after 2 s entries are lost.
 const SLOW: Duration = Duration::from_secs(1);
 
-/// The sessions of this console.
 #[derive(Debug, Default)]
 pub(crate) struct Sessions {
     /// `None`: nothing is recorded.
     shelf: Option<Shelf>,
-    /// Those who let others watch.
+    /// Servers for live viewers.
     servers: Servers,
     now: Option<Now>,
-    /// Why the last recording could not begin, or ended by itself.
+    /// Reason why the last recording could not start, or ended on its own.
     trouble: Option<String>,
     looked: Option<Instant>,
-    /// The disk is full in this time, at the present rate.
+    /// Time until the disk is full at the current rate.
     full_in: Option<Duration>,
-    /// Loops that begin now are not recorded.
+    /// Loops that start now are not recorded.
     rests: bool,
-    /// Where the endoscope's pictures come from.
+    /// Source of the endoscope images.
     reel: Reel,
 }
 
-/// The session that is being recorded.
 #[derive(Debug)]
 struct Now {
     recorder: Recorder,
@@ -69,7 +68,7 @@ struct Now {
     told: Told,
 }
 
-/// What of the screen is in the session already.
+/// Screen events that are already in the session.
 #[derive(Debug, Default)]
 struct Told {
     /// Number of marks, and the time of the last one, s on the loop's clock.
@@ -79,26 +78,25 @@ struct Told {
     alarms: Vec<Alarm>,
 }
 
-/// What the screen shows of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Shown {
-    /// How long it has run.
+    /// Duration of the recording.
     pub(crate) seconds: u64,
     pub(crate) kept: bool,
     pub(crate) path: PathBuf,
     pub(crate) bytes: u64,
-    /// Entries that were lost, because the disk was slower than the loop.
+    /// Entries lost because the disk was slower than the loop.
     pub(crate) lost: u64,
-    /// Pictures of the endoscope in it.
+    /// Number of endoscope images.
     pub(crate) pictures: u64,
-    /// Marks in it.
+    /// Number of marks.
     pub(crate) marks: usize,
-    /// Where others can watch, and how many do.
+    /// Addresses and numbers of live viewers.
     pub(crate) watched: Vec<watching::Shown>,
 }
 
 impl Sessions {
-    /// Records into the folder `sessions` of the user's data folder; lets those of these servers watch.
+    /// Records into the folder `sessions` of the user's data folder, with these servers for live viewers.
     pub(crate) fn of_user(data_folder: Option<&Path>, servers: Servers) -> Self {
         let shelf = data_folder.map(|folder| Shelf::new(folder.join("sessions"), MOST_BYTES));
         let now = None;
@@ -108,7 +106,7 @@ impl Sessions {
         Self { shelf, servers, now, trouble, looked, full_in, rests: false, reel: Reel::default() }
     }
 
-    /// Begins to record a loop of this plan; the tap is for it. `None` if nothing is recorded.
+    /// Starts to record a loop of this plan; the tap is for the loop. `None` if nothing is recorded.
     pub(crate) fn begin(&mut self, plan: &Plan) -> Option<Tap> {
         self.end();
         let shelf = self.shelf.as_ref().filter(|_| !self.rests)?;
@@ -137,22 +135,22 @@ impl Sessions {
         }
     }
 
-    /// Those who may be told of a trial of a blind study, which is called this.
+    /// Audiences that may see a trial of a blind study with this name.
     pub(crate) fn blind_audiences(&self, plan: &Plan, trial: &str) -> Vec<Box<dyn Audience>> {
         self.servers.blind_audiences(plan, trial)
     }
 
-    /// Where the endoscope's pictures are to be put for the recording.
+    /// Target of the endoscope images for the recording.
     pub(crate) const fn reel(&self) -> &Reel {
         &self.reel
     }
 
-    /// Whether loops that begin from now on are left out.
+    /// Sets whether loops that start from now on are not recorded.
     pub(crate) fn rest(&mut self, rests: bool) {
         self.rests = rests;
     }
 
-    /// Records what this source tells of the objects of the scene too; to be called before the loop starts.
+    /// Also records the objects of the scene that this source reports. Call it before the loop starts.
     pub(crate) fn watch(&self, source: Box<dyn ObjectSource>) {
         if let Some(Now { recorder, .. }) = &self.now {
             recorder.watch(source);
@@ -163,14 +161,13 @@ impl Sessions {
     pub(crate) fn end(&mut self) {
         let Some(Now { recorder, path, kept, .. }) = self.now.take() else { return };
         match recorder.finish() {
-            // Whether it can be deleted matters to nobody.
+            // A failed deletion does not matter.
             Ok(progress) if progress.ticks < LEAST_TICKS && !kept => drop(std::fs::remove_file(path)),
             Ok(_) => {}
             Err(error) => self.trouble = Some(chain(&error)),
         }
     }
 
-    /// Keeps the session that is being recorded, or leaves it to be deleted.
     pub(crate) fn toggle_kept(&mut self) {
         let Some(now) = &mut self.now else { return };
         match keep(&now.path, !now.kept) {
@@ -179,8 +176,8 @@ impl Sessions {
         }
     }
 
-    /// Adds to the session the marks (s on the loop's clock) and the alarms of the screen that it has not: each alarm when its cause
-    /// appears, and when that ends. `written` are those alarms in English, for the file. `now_s` is the time of the last tick; faults are in
+    /// Adds new marks (s on the loop's clock) and alarms of the screen to the session: each alarm when its cause appears, and
+    /// when it ends. `written` are those alarms in English, for the file. `now_s` is the time of the last tick; faults are in
     /// the session anyway.
     pub(crate) fn tell(&mut self, marks_s: &VecDeque<f64>, alarms: &AlarmLog, written: &[Alarm], now_s: Option<f64>) {
         let (Some(Now { recorder, told, .. }), Some(now_s)) = (&mut self.now, now_s) else { return };
@@ -217,7 +214,7 @@ impl Sessions {
         }
     }
 
-    /// Why nothing is recorded although it should be, or what will be in the way within a day.
+    /// Reason why nothing is recorded although it should be, or a problem expected within a day.
     pub(crate) fn trouble(&self) -> Option<String> {
         let recorder = self.now.as_ref().map(|now| &now.recorder);
         let ended = recorder.and_then(Recorder::trouble).map(|error| chain(error));
@@ -230,7 +227,7 @@ impl Sessions {
         ended.or_else(slow).or_else(lost).or_else(pictures).or_else(|| self.trouble.clone()).or_else(full)
     }
 
-    /// The session that is being recorded; `None` if none is.
+    /// The current recording; `None` if there is none.
     pub(crate) fn shown(&self) -> Option<Shown> {
         let now = self.now.as_ref().filter(|now| now.recorder.trouble().is_none())?;
         let progress = now.recorder.progress();
@@ -246,7 +243,7 @@ impl Sessions {
         })
     }
 
-    /// Makes room while a session grows; to be called now and then.
+    /// Makes room while a session grows. Call it regularly.
     pub(crate) fn look_after(&mut self) {
         let (Some(shelf), Some(now)) = (&self.shelf, &self.now) else { return };
         if self.looked.is_some_and(|at| at.elapsed() < ROOM_EVERY) {
@@ -342,7 +339,7 @@ mod tests {
         let plan = plan();
         let tap = sessions.begin(&plan);
         let handle = start(Assembly { tap, ..plan.assembly().unwrap() }).unwrap();
-        // However short it is, it is not deleted.
+        // Even a short session is not deleted if it is kept.
         sessions.toggle_kept();
         let mut marks_s = VecDeque::new();
         let mut log = AlarmLog::default();
@@ -359,7 +356,7 @@ mod tests {
             let present = if marks_s.len() == 2 { Some(0.41) } else { None };
             let signs = Signs { running: true, bias_moved_n: present, ..Signs::default() };
             log.update(&judge(&signs), &Moment::now(Some(now_s), now_s));
-            // Told once, however often the window is drawn.
+            // Reported once, however often the window is drawn.
             for _ in 0..2 {
                 sessions.tell(&marks_s, &log, &judge(&signs), Some(now_s));
             }

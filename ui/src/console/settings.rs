@@ -1,7 +1,7 @@
-//! Settings of the console that are saved between sessions: role and appearance. Nothing of the loop is saved: a rig
-//! always starts with its own file.
+//! Settings of the console that are saved between sessions: role and appearance. Nothing of the loop is saved: a rig always
+//! starts with its own file.
 //!
-//! Saved as JSON beside the calibrations. A file that cannot be read is renamed and reported; it is never fatal.
+//! Saved as JSON next to the calibrations. An unreadable file is renamed and reported; it is never fatal.
 
 use std::{
     io,
@@ -20,48 +20,40 @@ use crate::language::Language;
 const FILE: &str = "console.json";
 const SET_ASIDE: &str = "console.corrupted.json";
 
-/// The settings.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of a menu")]
 pub struct Settings {
-    /// The user's role.
     pub role: Role,
-    /// Arrangement of the technician's panels.
     pub layout: Layout,
-    /// Whether alarms have sound.
     pub sound: bool,
-    /// Whether the light palette is used.
     pub light: bool,
-    /// Whether sessions have the endoscope's pictures.
+    /// Whether sessions include the endoscope image.
     pub records_picture: bool,
-    /// How the endoscope's picture is shown.
     pub picture: PictureSettings,
-    /// The language of the window.
     pub language: Language,
-    /// Whether the tour was finished or skipped.
     pub toured: bool,
     /// Scale of the user interface, percent; [`SCALES`].
     pub scale_percent: u16,
-    /// Rigs and scenes that were used, the last one first.
+    /// Rigs and scenes in order of last use, newest first.
     pub recent: Vec<Choice>,
-    /// Folders of user studies outside of the user's data.
+    /// Folders of user studies outside the user's data.
     pub studies: Vec<PathBuf>,
 }
 
-/// How the endoscope's picture is shown.
+/// Display settings of the endoscope image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PictureSettings {
     /// Added to every value, percent of white.
     pub brightness_percent: i16,
-    /// Distance of every value from middle grey.
+    /// Scales the distance of every value from middle grey.
     pub contrast_percent: u16,
-    /// Above 100 lifts what is dark.
+    /// Above 100 brightens dark areas.
     pub gamma_percent: u16,
-    /// Cut off at the left, top, right and bottom of the picture as it comes.
+    /// Cut off at the left, top, right and bottom of the camera image.
     pub crop_percent: [u8; 4],
-    /// Forces are drawn where the tips are now, not where they were when the picture was made.
+    /// Forces are drawn at the current tip positions, not at those of the image's time.
     pub forces_of_now: bool,
 }
 
@@ -74,20 +66,19 @@ impl Default for PictureSettings {
 }
 
 impl PictureSettings {
-    /// Its brightness, contrast and gamma.
     pub(super) fn tone(&self) -> Tone {
         let share = |percent: u16| f64::from(percent) / 100.0;
         let brightness = f64::from(self.brightness_percent) / 100.0;
         Tone { brightness, contrast: share(self.contrast_percent), gamma: share(self.gamma_percent) }.limited()
     }
 
-    /// What is cut off at the left, top, right and bottom, as shares.
+    /// Parts cut off at the left, top, right and bottom, as fractions.
     pub(super) fn crop(&self) -> [f32; 4] {
         self.crop_percent.map(|percent| f32::from(percent.min(CROP_MOST_PERCENT)) / 100.0)
     }
 }
 
-/// Most that is cut off at an edge, percent.
+/// Maximum cut-off at an edge, percent.
 pub const CROP_MOST_PERCENT: u8 = 40;
 
 /// Smallest and largest scale, percent.
@@ -96,7 +87,6 @@ pub const SCALES: std::ops::RangeInclusive<u16> = 100..=200;
 const STEP_PERCENT: i16 = 25;
 
 impl Settings {
-    /// Makes everything so many steps larger.
     pub(super) fn scale_by(&mut self, steps: i16) {
         let wanted = self.scale_percent.saturating_add_signed(STEP_PERCENT * steps);
         self.scale_percent = wanted.clamp(*SCALES.start(), *SCALES.end());
@@ -125,14 +115,13 @@ impl Default for Settings {
 #[derive(Debug, Default)]
 pub struct Kept {
     folder: Option<PathBuf>,
-    /// The present settings.
     pub now: Settings,
     saved: Settings,
     told: Option<String>,
 }
 
 impl Kept {
-    /// The user's settings, saved beside the calibrations.
+    /// The user's settings, saved next to the calibrations.
     pub fn of_user() -> Self {
         let folder = Store::of_user().ok().and_then(|store| store.folder().parent().map(Path::to_path_buf));
         folder.map_or_else(Self::default, |folder| Self::open(&folder))
@@ -166,7 +155,6 @@ impl Kept {
         }
     }
 
-    /// Whether the tour has not been shown yet.
     pub const fn is_first_run(&self) -> bool {
         self.folder.is_some() && !self.now.toured
     }
@@ -177,7 +165,7 @@ impl Kept {
     }
 }
 
-/// Parses settings; returns them with a message about them. If only the layout cannot be read, the other settings are
+/// Parses settings; returns them with a message about problems. If only the layout cannot be read, the other settings are
 /// still used. Unknown fields, written by a newer version, are ignored.
 fn read(text: &str) -> Result<(Settings, Option<String>), serde_json::Error> {
     let mut value: serde_json::Value = serde_json::from_str(text)?;

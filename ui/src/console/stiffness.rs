@@ -1,8 +1,8 @@
-//! Estimates the stiffness of the present contact from the ticks: the slope of force over displacement along the force,
-//! by least squares over the last half second of contact.
+//! Estimates the stiffness of the current contact from the ticks: the slope of force over displacement along the force, by
+//! least squares over the last half second of contact.
 //!
 //! Displacement in m, force in N (workspace frame), stiffness in N/m. Only moments are stored, so a tick costs a few
-//! multiplications. Values that are not finite are left out; between contacts the last stiffness is kept.
+//! multiplications. Non-finite values are ignored; between contacts the last stiffness is kept.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 const CONTACT_N: f64 = 0.3;
 /// Averaging time, s.
 const MEMORY_S: f64 = 0.5;
-/// After a pause this long a contact counts as a new one, s.
+/// After a pause of this length a contact counts as new, s.
 const PAUSE_S: f64 = 0.2;
 /// Contact time, s, and variation of the displacement, m, needed for an estimate.
 const LEAST_S: f64 = 0.15;
@@ -69,7 +69,7 @@ impl ContactStiffness {
         }
     }
 
-    /// Stiffness of the present or of the last contact, N/m; `None` before the first.
+    /// Stiffness of the current or last contact, N/m; `None` before the first.
     pub const fn n_m(&self) -> Option<f64> {
         self.n_m
     }

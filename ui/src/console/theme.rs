@@ -10,7 +10,6 @@ use egui::{
     epaint::Shadow, vec2,
 };
 
-/// The colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
     /// Background of the window.
@@ -47,11 +46,11 @@ pub struct Palette {
     pub reference: Color32,
     /// Several lines in one plot: axes x, y, z, or the members of an ensemble. They also differ in lightness.
     pub series: [Color32; 4],
-    /// The frame of what is recorded, and nothing else.
+    /// The frame around recorded data only.
     pub past: Color32,
-    /// The frame of a rig at another machine that is only watched.
+    /// The frame of a rig at another machine, shown without control.
     pub watching: Color32,
-    /// The loop runs and feeds force back.
+    /// The loop runs and renders force.
     pub engaged: Color32,
     /// The loop is at rest.
     pub at_rest: Color32,
@@ -128,13 +127,11 @@ thread_local! {
     static NOW: Cell<&'static Palette> = const { Cell::new(&DARK) };
 }
 
-/// The present palette.
 pub fn now() -> &'static Palette {
     NOW.get()
 }
 
-/// Ground of words that lie on the 3-D view or on the endoscope's picture, and their outline: whatever is below, even white, they can be
-/// read on it.
+/// Background and outline of text over the 3-D view or the endoscope image: the text stays readable even on white.
 pub const VEIL: Color32 = Color32::from_black_alpha(215);
 
 /// Background of the 3-D view, far and near.
@@ -178,7 +175,7 @@ pub fn choose(ctx: &egui::Context, light: bool) {
     ctx.set_theme(if light { egui::Theme::Light } else { egui::Theme::Dark });
 }
 
-/// Roboto alone: every character that the screen shows is in it, and one font looks the same on every computer.
+/// Roboto only: it has every character of the screen, and one font looks the same on every computer.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
     let regular = FontData::from_static(include_bytes!("../../../assets/fonts/Roboto-Regular.ttf"));
@@ -262,7 +259,8 @@ mod tests {
 
     use super::*;
 
-    /// Every character beyond ASCII in the console's source, where all its texts are: nothing else may be drawn as an empty box.
+    /// Every non-ASCII character in the console's source, which contains all its texts: none of them may be drawn as an empty
+    /// box.
     fn written(folder: &Path, into: &mut std::collections::BTreeSet<char>) {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -305,10 +303,10 @@ mod tests {
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
-    /// The least contrast of text (WCAG 2, level AA).
+    /// Minimum contrast of text (WCAG 2, level AA).
     const LEAST: f64 = 4.5;
 
-    /// The colours of a palette in which words and numbers are written.
+    /// The colours of text and numbers in a palette.
     fn inks(palette: &Palette) -> Vec<(&'static str, Color32)> {
         let mut inks = vec![
             ("text", palette.text),
@@ -357,7 +355,7 @@ mod tests {
             assert!(contrast(palette.stop, palette.panel) > 10.0, "the stop must be found without looking");
             assert!(contrast(palette.measured, palette.rendered) > 1.4, "the forces differ in lightness too");
         }
-        // The strip of alarms is dark in both.
+        // The alarm strip is dark in both.
         assert!(contrast(DARK.text_weak, DARK.card) > LEAST);
     }
 

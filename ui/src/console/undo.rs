@@ -1,18 +1,18 @@
-//! Undo and redo of the arrangement and the look of the screen.
+//! Undo and redo of the layout and display settings.
 //!
-//! A [`Look`] is everything that can be taken back: a list of what is in it, so that nothing else ever is. What goes to the machine
-//! (mode, gain, delay, thresholds, engaging, stopping) is no part of it, nor is the role, whose demonstration sets modes, nor the alarms'
-//! sound, nor what is recorded. The history ends with the window.
+//! A [`Look`] lists everything that can be undone; nothing else is. Settings of the machine (mode, gain, delay, thresholds,
+//! engaging, stopping) are excluded, as are the role, whose demonstration sets modes, the alarm sound, and recording. The
+//! history ends with the window.
 
 use super::{desk::Layout, panels::ForcesView, scene3d::extras::Extras, settings::PictureSettings};
 use crate::language::Language;
 
-/// Most steps that can be taken back.
+/// Maximum number of undo steps.
 const STEPS: usize = 100;
-/// A slider or a wheel that goes on changing the same part within this time makes one step, s.
+/// Changes of the same part by a slider or wheel within this time form one step, s.
 const SAME_STEP_S: f64 = 0.6;
 
-/// The arrangement and the look of the screen.
+/// Layout and display settings.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Look {
     pub(super) layout: Layout,
@@ -24,19 +24,18 @@ pub(super) struct Look {
     pub(super) traces: ForcesView,
 }
 
-/// How two looks differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
-    /// Only in what a slider sets: the endoscope's picture.
+    /// Only slider settings of the endoscope image.
     Picture,
-    /// Only in what wheel and drag set: the interval of the traces.
+    /// Only the interval of the traces, set by wheel and drag.
     Traces,
-    /// In something that is set with one action.
+    /// A setting that one action changes.
     AtOnce,
 }
 
 impl Look {
-    /// How it differs from this one. Which tab is in front is no change: it would be in the way of what matters.
+    /// The difference between two looks. The front tab does not count: undoing it would hide the changes that matter.
     fn change(&self, other: &Self) -> Option<Change> {
         let Self { layout, light, language, scale_percent, picture, extras, traces } = self;
         let at_once = layout.places != other.layout.places
@@ -55,7 +54,7 @@ impl Look {
     }
 }
 
-/// Looks before the present one, and those that were taken back.
+/// Looks before the current one, and undone looks.
 #[derive(Debug, Default)]
 pub(super) struct History {
     before: Vec<Look>,
@@ -65,7 +64,8 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Looks at the screen at the end of a frame, at this time of the window; a change is a step once the pointer is not `held` down.
+    /// Records the look at the end of a frame, at this time of the window; a change becomes a step once the pointer is not
+    /// `held` down.
     pub(super) fn watch(&mut self, look: Look, time_s: f64, held: bool) {
         let Some(now) = &mut self.now else {
             self.now = Some(look);
@@ -91,7 +91,7 @@ impl History {
         }
     }
 
-    /// The next look is taken as it is: the operator did not make it.
+    /// Records the next look without a step: the operator did not make the change.
     pub(super) fn adopt(&mut self) {
         self.now = None;
     }
@@ -104,7 +104,6 @@ impl History {
         !self.after.is_empty()
     }
 
-    /// The look before the last step.
     pub(super) fn undo(&mut self) -> Option<Look> {
         let look = self.before.pop()?;
         self.after.extend(self.now.replace(look.clone()));
@@ -112,7 +111,6 @@ impl History {
         Some(look)
     }
 
-    /// The look that was taken back last.
     pub(super) fn redo(&mut self) -> Option<Look> {
         let look = self.after.pop()?;
         self.before.extend(self.now.replace(look.clone()));

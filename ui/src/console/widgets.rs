@@ -9,7 +9,7 @@ use egui_plot::Plot;
 
 use super::theme;
 
-/// A plot whose range is given to it: nothing that the pointer does moves it.
+/// A plot with a fixed range: the pointer does not move it.
 pub fn still(plot: Plot<'_>) -> Plot<'_> {
     plot.allow_drag(false)
         .allow_zoom(false)
@@ -36,7 +36,8 @@ pub fn card<R>(ui: &mut Ui, title: &str, meaning: &str, content: impl FnOnce(&mu
     inner.inner
 }
 
-/// Shows this at the right of a row, in the order in which it is read: in a layout from the right, the keyboard would go backwards.
+/// Shows `content` at the right of a row, in reading order: in a right-to-left layout the keyboard focus would move
+/// backwards.
 pub fn at_the_right<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with("right");
     let known: Option<f32> = ui.data(|data| data.get_temp(id));
@@ -50,34 +51,34 @@ pub fn at_the_right<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     row.inner
 }
 
-/// Names a plot for who cannot see it, with a summary of what it shows; the summary is made only if somebody listens.
+/// Names a plot for screen readers, with a summary of its content; the summary is built only if a screen reader is active.
 pub fn describe(ui: &Ui, plot: &Response, name: &str, summary: impl FnOnce() -> String) {
     plot.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, name));
     ui.ctx().accesskit_node_builder(plot.id, |node| node.set_description(summary()));
 }
 
-/// Least part of its size to which a font is reduced so that words fit.
+/// Minimum factor by which a font is reduced to fit its text.
 const LEAST_SIZE: f32 = 0.6;
 
-/// The width of these words in one line.
+/// Width of this text in one line.
 pub fn width_of(painter: &Painter, words: &str, font: FontId) -> f32 {
     painter.layout_no_wrap(words.to_owned(), font, Color32::PLACEHOLDER).size().x
 }
 
-/// This font, smaller if these words are wider than this in it: languages differ in length where the place does not grow.
+/// This font, smaller if the text is wider than `width`: languages differ in length where the space is fixed.
 pub fn fitting(painter: &Painter, words: &str, font: FontId, width: f32) -> FontId {
     let share = width / width_of(painter, words, font.clone()).max(1.0);
-    // Glyphs are placed on whole pixels, so that a smaller line is a little longer than its share.
+    // Glyphs are placed on whole pixels, so a smaller line is slightly longer than its proportion.
     let size = if share < 1.0 { font.size * (0.97 * share).max(LEAST_SIZE) } else { font.size };
     FontId { size, ..font }
 }
 
-/// The same for words in a style of the window.
+/// Like [`fitting`], for text in a style of the window.
 pub fn fitting_style(ui: &Ui, words: &str, style: &TextStyle, width: f32) -> FontId {
     fitting(ui.painter(), words, style.resolve(ui.style()), width)
 }
 
-/// A name on the left and its value on the right; `meaning` is their hover text. A name that is too long for one line has several.
+/// A name on the left and its value on the right; `meaning` is their hover text. A long name takes several lines.
 pub fn figure(ui: &mut Ui, name: &str, value: impl Into<String>, meaning: &str) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;
     let value = value.into();
@@ -114,22 +115,15 @@ pub fn small(text: impl Into<String>) -> RichText {
     weak(text).text_style(egui::TextStyle::Small)
 }
 
-/// Symbols that convey a state together with their colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
-    /// At rest.
     Ring,
-    /// Running.
     Disc,
-    /// Stopped.
     Square,
-    /// Something is wrong.
     Triangle,
-    /// Halt.
     Octagon,
 }
 
-/// Draws a symbol of this radius.
 pub fn sign(painter: &Painter, sign: Sign, centre: Pos2, radius: f32, colour: Color32) {
     match sign {
         Sign::Ring => {
@@ -162,7 +156,7 @@ pub fn sign_ui(ui: &mut Ui, what: Sign, radius: f32, colour: Color32) -> Respons
     response
 }
 
-/// The symbol of a force beside its name: a line with a cone, or a beaded line with a double cone.
+/// The symbol of a force next to its name: a line with a cone, or a beaded line with a double cone.
 pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rendered: bool) {
     let colour = if rendered { palette.rendered } else { palette.measured };
     let y = rect.center().y;
@@ -185,7 +179,7 @@ pub fn force_sign(painter: &Painter, palette: &theme::Palette, rect: Rect, rende
     cone(right);
 }
 
-/// A horizontal bar that fills this share of `rect` from the left.
+/// A horizontal bar that fills this fraction of `rect` from the left.
 pub fn bar(painter: &Painter, rect: Rect, share: f64, colour: Color32) {
     painter.rect_filled(rect, 2.0, theme::now().groove);
     let share = if share.is_finite() { share.clamp(0.0, 1.0) as f32 } else { 1.0 };

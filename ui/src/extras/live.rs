@@ -1,4 +1,4 @@
-//! Foxglove and `PlotJuggler` watch while it happens.
+//! Live viewing with Foxglove and `PlotJuggler`.
 
 use std::net::SocketAddr;
 
@@ -13,7 +13,6 @@ use crate::{
     watching::{Server, Show, Shown},
 };
 
-/// The extra.
 pub(super) struct Live;
 
 impl Extra for Live {

@@ -1,4 +1,4 @@
-//! What the page says of one arm.
+//! The part of the page about one arm.
 
 use maud::{Markup, html};
 use nima_core::{impedance::Mode, safety::Gate};
@@ -16,13 +16,13 @@ pub(super) fn arm(session: &Figures, arm: &ArmFigures) -> Markup {
             h2 { "The " (arm.side) " arm" }
             h3 { "States" }
             (plots::states(session, arm))
-            p.note { "Triangles: black for faults, white for refused commands and alarms. Numbered lines: marks of the operator." }
+            p.note { "Triangles: black for faults, white for refused commands and alarms. Numbered lines: operator marks." }
             (seconds(session, arm))
             h3 { "Forces" }
             (plots::forces(session, arm))
             p.note {
-                "Lengths of the force vectors; each column spans the least and the largest value in it. \
-                 Delayed: as the link delivers it. Rendered: given to the hand, after the gates."
+                "Magnitudes of the forces; each column spans the minimum and maximum of its time. \
+                 Delayed: as delivered by the link. Rendered: to the hand, after the gates."
             }
             (forces(arm))
             h3 { "Gates" }
@@ -65,7 +65,7 @@ fn forces(arm: &ArmFigures) -> Markup {
         "rate RMS (N/s)",
         "rate peak (N/s)",
     ];
-    table_or(&heads, &rows, "The arm was never engaged: no figures of forces.")
+    table_or(&heads, &rows, "The arm was never engaged: no force results.")
 }
 
 fn force(name: &str, of: &ForceFigures) -> Vec<String> {
@@ -92,8 +92,8 @@ fn gates(arm: &ArmFigures) -> Markup {
     html! {
         (table(&["gate", "reduced the force", "meaning"], &rows))
         p {
-            "Dead band: withheld " (digits(arm.withheld_mean_n)) " N on average while engaged, " (digits(arm.withheld_max_n))
-            " N at most. Energy: at least " (digits(1e3 * arm.stored_least_j)) " mJ were left for the hand."
+            "Dead band: withheld " (digits(arm.withheld_mean_n)) " N on average while engaged, maximum " (digits(arm.withheld_max_n))
+            " N. Energy: minimum " (digits(1e3 * arm.stored_least_j)) " mJ left for the hand."
         }
     }
 }
@@ -107,7 +107,7 @@ fn identification(of: &Identified) -> Markup {
             .map_or_else(|| "-".to_owned(), |n| format!("{:.2}", error_n / n));
         Some(vec![name.to_owned(), digits(error_n), ratio])
     };
-    let names = Mode::ALL.iter().map(|mode| mode_name(*mode)).chain(["the rig's method of others"]);
+    let names = Mode::ALL.iter().map(|mode| mode_name(*mode)).chain(["the rig's baseline method"]);
     let errors: Vec<_> = names.zip(&of.error_n).filter_map(|(name, error_n)| row(name, error_n)).collect();
     if errors.is_empty() {
         return html! { p { "No mode predicted a force." } };
@@ -118,13 +118,13 @@ fn identification(of: &Identified) -> Markup {
     };
     let degrees: Vec<Vec<String>> = DEGREE_COLUMNS.iter().zip(&of.degree_shares).filter_map(shares).collect();
     html! {
-        (table(&["mode, where computed", "mean error at the horizon (N)", "over direct (DFR)"], &errors))
+        (table(&["mode, where computed", "mean prediction error (N)", "over direct (DFR)"], &errors))
         @if !degrees.is_empty() { (table(&["degree chosen by", "none", "1", "2", "3", "4", "5"], &degrees)) }
-        p { "Without contact, so that nothing was learnt: " (percent(of.resting_share)) " of engaged time." }
+        p { "Without contact, and therefore without learning: " (percent(of.resting_share)) " of engaged time." }
         @if let Some(network) = of.network {
             p {
-                "Network: " (percent(network.share)) " of the force at the tip came from it; " (percent(network.outside_share))
-                " of the time was outside of its training; largest doubt " (digits(network.doubt_max)) " (1: limit of its training)."
+                "Network: " (percent(network.share)) " of the tip force came from a network; " (percent(network.outside_share))
+                " of the time was outside its training data; largest uncertainty " (digits(network.doubt_max)) " (1: limit of its training)."
             }
         } @else {
             p { "No network gave the force at the tip." }

@@ -1,4 +1,4 @@
-//! Pieces of a page.
+//! Building blocks of a page.
 
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
@@ -83,7 +83,6 @@ pub(crate) fn digits(value: f64) -> String {
     }
 }
 
-/// A share in percent.
 pub(super) fn percent(share: f64) -> String {
     match share {
         0.0 => "0 %".to_owned(),
@@ -92,7 +91,6 @@ pub(super) fn percent(share: f64) -> String {
     }
 }
 
-/// A time within a session.
 pub(super) fn time(t_s: f64) -> String {
     if t_s < 60.0 { format!("{t_s:.3} s") } else { format!("{}:{:06.3} min", (t_s / 60.0).floor(), t_s % 60.0) }
 }

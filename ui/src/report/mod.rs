@@ -1,4 +1,4 @@
-//! The report of sessions: one page that needs nothing beside it.
+//! The report of sessions: one self-contained page.
 
 mod arms;
 pub(crate) mod html;
@@ -14,20 +14,17 @@ use nima_session::report::Figures;
 use crate::command::output;
 use html::{section, table};
 
-/// Name of the page in its folder.
 pub(crate) const PAGE: &str = "report.html";
 
-/// Reads the sessions and writes their page into this folder, which is made if it is missing.
+/// Reads the sessions and writes their page into this folder, which is created if missing.
 pub(crate) fn write(sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
     write_figures(&read(sessions)?, sessions, folder)
 }
 
-/// The figures of these sessions.
 pub(crate) fn read(sessions: &[PathBuf]) -> anyhow::Result<Vec<Figures>> {
     sessions.iter().map(|path| Ok(Figures::read(path)?)).collect()
 }
 
-/// Writes the page of these figures.
 pub(crate) fn write_figures(figures: &[Figures], sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
     let inputs: Vec<&Path> = sessions.iter().map(PathBuf::as_path).collect();
     output::folder(folder, &[PAGE], &inputs)?;
@@ -35,7 +32,6 @@ pub(crate) fn write_figures(figures: &[Figures], sessions: &[PathBuf], folder: &
     Ok(folder.join(PAGE))
 }
 
-/// The whole page.
 fn page(sessions: &[Figures]) -> String {
     let title = match sessions {
         [one] => format!("Session {}", name(one)),
@@ -44,8 +40,8 @@ fn page(sessions: &[Figures]) -> String {
     let is_comparison = sessions.len() > 1;
     let body = html! {
         p.note {
-            "NIMA Console, research use only. Forces are those of the tissue on the instrument's tip. Times are seconds \
-             from the beginning of the session."
+            "NIMA Console, research use only. Forces act from the tissue on the instrument's tip. Times are seconds \
+             since the start of the session."
         }
         @if is_comparison { (section("Comparison", &overall::comparison(sessions))) }
         @for session in sessions {
@@ -62,7 +58,6 @@ fn page(sessions: &[Figures]) -> String {
     html::page(&title, &body)
 }
 
-/// Name of the session's file without its folder.
 fn name(session: &Figures) -> String {
     Path::new(&session.file)
         .file_name()
@@ -71,8 +66,8 @@ fn name(session: &Figures) -> String {
 
 fn definitions() -> Markup {
     let rows = [
-        ["peak, mean", "largest and mean length of the force vector"],
-        ["integral", "the length of the force, integrated over time"],
+        ["peak, mean", "maximum and mean magnitude of the force"],
+        ["integral", "magnitude of the force, integrated over time"],
         [
             "force volume",
             "volume of the ellipsoid whose half axes are the standard deviations of the force along its three principal axes \
@@ -83,8 +78,9 @@ fn definitions() -> Markup {
             "change of the force vector from one sample to the next, over the time between them; sensor noise adds to it",
         ],
         [
-            "error at the horizon",
-            "how wrong each mode is about the force one link delay ahead; the delayed force is \"Direct (DFR)\"",
+            "prediction error",
+            "error of each mode's prediction of the force one link delay ahead; the delayed force is \"Direct \
+             (DFR)\"",
         ],
         ["gates", "the checks between a mode's force and the hand; each can reduce the force"],
     ];
@@ -122,7 +118,7 @@ mod tests {
             mark(3.25, MarkLevel::Mark, "mark 2"),
         ];
         let page = page(&[Figures { marks, ..session("rig") }]);
-        assert!(page.contains("<td>marks of the operator</td><td>1.500 s, 3.250 s</td>"), "{page}");
+        assert!(page.contains("<td>operator marks</td><td>1.500 s, 3.250 s</td>"), "{page}");
         assert!(page.contains("<td>faults</td><td>0</td>") && page.contains("alarm: late"), "{page}");
     }
 

@@ -1,4 +1,4 @@
-//! What the page says of a session as a whole, and of several beside each other.
+//! The part of the page about a session as a whole, and the comparison of several sessions.
 
 use maud::{Markup, html};
 use nima_session::{
@@ -11,7 +11,7 @@ use super::{
     name,
 };
 
-/// Most rows of the list of what happened.
+/// Maximum number of rows in the list of events.
 const MARKS: usize = 1000;
 const ABOUT: [(&str, &str); 13] = [
     ("started", "started (UTC)"),
@@ -29,18 +29,18 @@ const ABOUT: [(&str, &str); 13] = [
     ("delay_s", "delay of the link at the start (s)"),
 ];
 
-/// What tables of calibrations tell of how good these are.
+/// Metadata keys about the quality of a calibration, with their names on the page.
 const CALIBRATIONS: [(&str, &str); 7] = [
-    ("gravity_verdict", "verdict on gravity"),
-    ("network_verdict", "verdict on the network"),
-    ("gravity_error_n", "gravity: mean error on poses not used for it (N)"),
+    ("gravity_verdict", "gravity: verdict"),
+    ("network_verdict", "network: verdict"),
+    ("gravity_error_n", "gravity: mean error on held-out poses (N)"),
     ("gravity_poses", "gravity: still poses"),
     ("network_error_n", "network: mean error on data recorded after its training (N)"),
-    ("network_rows", "network: rows of that check"),
-    ("network_doubt_share", "network: share of that check outside its training"),
+    ("network_rows", "network: rows of the check"),
+    ("network_doubt_share", "network: fraction of the check outside its training"),
 ];
 
-/// What it is, and whether anything went wrong.
+/// Properties of the session, and warnings.
 pub(super) fn summary(session: &Figures) -> Markup {
     let mut rows = vec![["file".to_owned(), name(session)], ["length".to_owned(), time(session.length_s)]];
     for (key, words) in ABOUT {
@@ -49,34 +49,34 @@ pub(super) fn summary(session: &Figures) -> Markup {
         }
     }
     rows.push(["end".to_owned(), end(session).to_owned()]);
-    rows.push(["holes in the journal".to_owned(), holes(session)]);
+    rows.push(["gaps in the journal".to_owned(), holes(session)]);
     if let Some(pictures) = &session.pictures {
-        rows.push(["endoscope's pictures".to_owned(), of_pictures(pictures)]);
+        rows.push(["endoscope images".to_owned(), of_pictures(pictures)]);
     }
     let faults = of_level(session, MarkLevel::Error).count();
     rows.push(["faults".to_owned(), faults.to_string()]);
     let marked: Vec<_> = of_level(session, MarkLevel::Mark).take(20).map(|mark| time(mark.t_s)).collect();
     let marked = if marked.is_empty() { "none".to_owned() } else { marked.join(", ") };
-    rows.push(["marks of the operator".to_owned(), marked]);
+    rows.push(["operator marks".to_owned(), marked]);
     let body = html! {
         table.about {
             @for [what, value] in rows { tr { td { (what) } td { (value) } } }
         }
         @if session.about.contains_key(ANONYMOUS) {
-            p.note { "An anonymous session: names, devices, calibrations, the journal and the date were left out." }
+            p.note { "Anonymous session: names, devices, calibrations, the journal and the date were removed." }
         }
         @for note in &session.notes { p.warning { "Note: " (note) } }
         @for fault in of_level(session, MarkLevel::Error).take(10) { p.error { (time(fault.t_s)) ": " (fault.words) } }
     };
-    section("What it is", &body)
+    section("Session", &body)
 }
 
 fn end(session: &Figures) -> &'static str {
     match session.closed {
         Some(true) => "closed properly",
-        _ if session.stretch => "a stretch that was cut out of a session",
+        _ if session.stretch => "an excerpt of a session",
         Some(false) => "not closed: the program was killed or the file was cut; the last half second may be missing",
-        None => "not known: there is no journal",
+        None => "unknown: no journal",
     }
 }
 
@@ -91,8 +91,8 @@ fn holes(session: &Figures) -> String {
 
 fn of_pictures(pictures: &PicturesFigures) -> String {
     let PicturesFigures { count, bytes, dropped, longest_gap_s, .. } = pictures;
-    let rate = pictures.rate_hz().map_or_else(String::new, |rate_hz| format!(", {rate_hz:.1} a second"));
-    let missing = if *dropped == 0 { "none is missing".to_owned() } else { format!("{dropped} are missing") };
+    let rate = pictures.rate_hz().map_or_else(String::new, |rate_hz| format!(", {rate_hz:.1} per second"));
+    let missing = if *dropped == 0 { "none missing".to_owned() } else { format!("{dropped} missing") };
     let megabytes = *bytes as f64 * 1e-6;
     format!("{count}{rate}, {megabytes:.1} MB; {missing}; longest gap {longest_gap_s:.2} s")
 }
@@ -101,14 +101,13 @@ fn of_level(session: &Figures, level: MarkLevel) -> impl Iterator<Item = &Mark> 
     session.marks.iter().filter(move |mark| mark.level == level)
 }
 
-/// How often what happened to the objects of the scene; nothing without them.
+/// Number of events of each kind, for the objects of the scene; empty without events.
 pub(super) fn happenings(session: &Figures) -> Markup {
     let Some(happenings) = &session.happenings else { return html! {} };
     let rows: Vec<_> = happenings.iter().map(|(kind, count)| vec![kind.replace('_', " "), count.to_string()]).collect();
-    section("What happened to the objects", &table_or(&["what", "how often"], &rows, "Nothing."))
+    section("Events of the objects", &table_or(&["what", "how often"], &rows, "Nothing."))
 }
 
-/// Everything that happened, in order.
 pub(super) fn marks(session: &Figures) -> Markup {
     let row = |mark: &Mark| vec![time(mark.t_s), mark.level.word().to_owned(), mark.words.clone()];
     let rows: Vec<_> = session.marks.iter().take(MARKS).map(row).collect();
@@ -117,18 +116,17 @@ pub(super) fn marks(session: &Figures) -> Markup {
         (table_or(&["time", "level", "what"], &rows, "No event and no command was recorded."))
         @if more > 0 { p { (more) " more are not listed; use --json" } }
     };
-    section("What happened", &body)
+    section("Events", &body)
 }
 
-/// Calibrations that were in force.
 pub(super) fn calibrations(session: &Figures) -> Markup {
     let mut rows: Vec<Vec<Markup>> = Vec::new();
     for (of, table) in &session.calibrations {
         let whose = match of.as_str() {
             "right" | "left" => format!("{of}, from the start"),
-            number => format!("number {number}, put in force later"),
+            number => format!("number {number}, activated later"),
         };
-        // Whether it may be used comes first.
+        // The verdict comes first.
         let (verdicts, others): (Vec<_>, Vec<_>) = table.iter().partition(|(key, _)| key.ends_with("_verdict"));
         for (key, value) in verdicts.into_iter().chain(others) {
             let known = CALIBRATIONS.iter().find(|(known, _)| known == key);
@@ -144,13 +142,13 @@ pub(super) fn calibrations(session: &Figures) -> Markup {
         }
     }
     let body = table_or(&["for", "what", "value"], &rows, "The file has no tables of calibrations.");
-    section("Calibrations in force", &body)
+    section("Calibrations in use", &body)
 }
 
-/// Periods missed, and percentiles.
+/// Missed periods, and percentiles.
 pub(super) fn timing(session: &Figures) -> Markup {
     let Some(timing) = &session.timing else { return html! {} };
-    let names = ["woken late (us)", "work of a tick (us)", "sample to force (us)"];
+    let names = ["wake-up delay (us)", "work per tick (us)", "sample to force (us)"];
     let row = |(name, times): (&&str, &Option<[f64; 4]>)| {
         let times = times.map_or_else(|| [const { String::new() }; 4], |times| times.map(digits));
         std::iter::once((*name).to_owned()).chain(times).collect()
@@ -172,7 +170,7 @@ pub(super) fn timing(session: &Figures) -> Markup {
     section("Timing", &body)
 }
 
-/// A column for each session.
+/// One column per session.
 pub(super) fn comparison(sessions: &[Figures]) -> Markup {
     let heads: Vec<String> = std::iter::once(String::new()).chain(sessions.iter().map(name)).collect();
     let about =
@@ -196,7 +194,6 @@ pub(super) fn comparison(sessions: &[Figures]) -> Markup {
     table(&heads, &rows)
 }
 
-/// A number of an arm, where there is one.
 type OfArm = (&'static str, fn(&ArmFigures) -> Option<String>);
 
 const OF_ARM: [OfArm; 8] = [

@@ -11,14 +11,13 @@ const LEFT: f64 = 64.0;
 const RIGHT: f64 = 14.0;
 const BAND: f64 = 26.0;
 const PLOT: f64 = 130.0;
-/// Most marks in a band: more would hide it.
+/// Maximum number of marks in a band: more would hide it.
 const MARKS: usize = 200;
-/// The numbers of marks stand above the triangles, and one label is for all that are closer together than this.
+/// Height of the row of mark numbers above the triangles; marks closer together than this share a label.
 const NUMBERS: f64 = 14.0;
 const APART: f64 = 20.0;
-/// Ticks that are further apart than this do not follow each other, s.
+/// Ticks further apart than this are not consecutive, s.
 const GAP_S: f64 = 0.02;
-/// Where nothing was recorded.
 pub(super) const NOT_RECORDED: &str = "not recorded";
 
 /// Name, colour and whether it is hatched: no two states differ by colour alone.
@@ -57,7 +56,8 @@ fn time_axis(length_s: f64, top: f64, bottom: f64) -> Markup {
     }
 }
 
-/// The states of an arm as a band, with a triangle at each warning and each error, and a numbered line at each mark of the operator.
+/// Draws the states of an arm as a band, with a triangle at each warning and error, and a numbered line at each operator
+/// mark.
 pub(super) fn states(session: &Figures, arm: &ArmFigures) -> Markup {
     let top = NUMBERS + 16.0;
     let bottom = top + BAND;
@@ -119,9 +119,9 @@ fn gaps(length_s: f64, states: &[Span]) -> Vec<[f64; 2]> {
     gaps
 }
 
-/// Places and texts of the numbers of marks at these places: those that are close together share one, such as 1-3.
+/// Positions and texts of the mark numbers; close marks share one label, such as 1-3.
 fn labels(places: &[f64]) -> Vec<(f64, String)> {
-    // First and last number, first and last place.
+    // First and last number, first and last position.
     let mut groups: Vec<(usize, usize, f64, f64)> = Vec::new();
     for (number, x) in (1..).zip(places) {
         match groups.last_mut() {
@@ -136,7 +136,7 @@ fn labels(places: &[f64]) -> Vec<(f64, String)> {
     groups.into_iter().map(label).collect()
 }
 
-/// The lengths of the three forces, one above the other on the same scale.
+/// Draws the magnitudes of the three forces, one above the other on the same scale.
 pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> Markup {
     let largest_n = arm.traces.iter().map(Trace::largest).fold(0.1, f64::max);
     let names = [("measured", COLOURS[4]), ("delayed", COLOURS[3]), ("rendered", COLOURS[0])];

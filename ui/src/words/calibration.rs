@@ -1,4 +1,4 @@
-//! Texts about calibrations: verdicts, missing data, and whether a saved calibration still holds.
+//! Texts about calibrations: verdicts, missing data, and the validity of a saved calibration.
 
 use nima_core::calibration::{
     Verdict,
@@ -40,7 +40,7 @@ impl Words for Missing {
             Self::TissueForce => NO_TISSUE_FORCE.get(),
             Self::Chain => NO_CHAIN.get(),
             Self::Sense => word(
-                "a sample is not finite or not newer than the previous one; check the sensors",
+                "a sample is not finite, or not newer than the previous sample; check the sensors",
                 "ein Messwert ist nicht endlich oder nicht neuer als der vorige; Sensoren prüfen",
             ),
         }
@@ -61,7 +61,6 @@ impl Words for Lack {
     }
 }
 
-/// Why a push was not recorded, and what to do.
 pub(crate) fn refusal(refusal: &Refusal) -> String {
     match refusal {
         Refusal::TooShort => word(
@@ -73,7 +72,7 @@ pub(crate) fn refusal(refusal: &Refusal) -> String {
             told!("the force varied by {by_n:.2} N; hold it still", "die Kraft schwankte um {by_n:.2} N; ruhig halten")
         }
         Refusal::MissedTissue => word(
-            "the sensor under the tissue measured nothing; push onto the tissue",
+            "the sensor under the tissue measured no force; push onto the tissue",
             "der Sensor unter dem Gewebe maß nichts; auf das Gewebe drücken",
         )
         .to_owned(),
@@ -84,7 +83,6 @@ pub(crate) fn refusal(refusal: &Refusal) -> String {
     }
 }
 
-/// Whether a saved gravity calibration still holds, and what to do.
 pub(crate) fn drift(drift: Drift) -> String {
     match drift {
         Drift::Waiting => {
@@ -100,16 +98,17 @@ pub(crate) fn drift(drift: Drift) -> String {
                 NotChecked::Moving => word("the tool moves", "das Instrument bewegt sich"),
                 NotChecked::Touched => word("something touches the tool", "etwas berührt das Instrument"),
                 NotChecked::InTrocar => word(
-                    "the instrument is in the trocar; start with it outside",
+                    "the instrument is in the trocar; start with the instrument outside",
                     "das Instrument steckt im Trokar; außerhalb starten",
                 ),
                 NotChecked::Engaged => word("the loop was engaged too early", "die Regelung wurde zu früh gekoppelt"),
             };
             told!("not checked: {why}", "nicht geprüft: {why}")
         }
-        Drift::Fine { by_n } => told!("{by_n:.2} N without contact, good", "{by_n:.2} N ohne Kontakt, OK"),
+        Drift::Fine { by_n } => told!("{by_n:.2} N without contact, passed", "{by_n:.2} N ohne Kontakt, OK"),
         Drift::Moved { by_n } => told!(
-            "drifted by {by_n:.2} N: make sure that nothing touches the tool; if this stays, calibrate gravity again",
+            "drifted by {by_n:.2} N: make sure that nothing touches the tool; if the drift remains, calibrate \
+             gravity again",
             "um {by_n:.2} N gedriftet: nichts darf das Instrument berühren; bleibt es so, Schwerkraft neu kalibrieren"
         ),
     }

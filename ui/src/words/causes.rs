@@ -1,4 +1,4 @@
-//! Texts about the ready check: why a point failed, and what to do.
+//! Texts about the ready check: causes and remedies of failed points.
 
 use nima_core::{calibration::gravity::NotChecked, kinematics::START_MISS_M};
 use nima_machine::{
@@ -11,13 +11,14 @@ use super::{
     Remedy as _, cure_of_refusal,
     findings::finding_words,
     names::role_name,
+    quoted,
     ready::{capital, with},
     refused_because, side_word,
     sides::{arm_stuck, exchanged, handle_askew, handle_pulls, handle_stuck, marker_stuck, no_push, trocar_moved},
 };
 use crate::language::{Text, told, word};
 
-/// Cause and cure of a point that failed, on a rig with these devices.
+/// Cause and remedy of a failed point.
 pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
     let words: [Text; 2] = match *cause {
         Cause::Missing { place } => return missing(place, roster),
@@ -49,7 +50,7 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
         Cause::DateBehind => DATE_BEHIND,
         Cause::Uncalibrated => UNCALIBRATED,
         Cause::NoRigFile => NO_RIG_FILE,
-        Cause::NoStop => [Text::of("No stop was seen", "Kein Halt erkannt"), STOP_CURE],
+        Cause::NoStop => [Text::of("No stop was detected", "Kein Halt erkannt"), STOP_CURE],
         Cause::NotReleased(why) => return not_released(why),
         Cause::NoBite(Watchdog::Loop) => NO_BITE_LOOP,
         Cause::NoBite(Watchdog::Source) => NO_BITE_SOURCE,
@@ -59,13 +60,13 @@ pub(crate) fn cause_words(cause: &Cause, roster: &Roster) -> [String; 2] {
 }
 
 const NO_GAUGES: [Text; 2] = [
-    Text::of("The devices delivered no figures", "Die Geräte lieferten keine Kennzahlen"),
-    Text::of("See the panel Devices, then check again", "Siehe Panel Geräte, dann neu prüfen"),
+    Text::of("The devices delivered no statistics", "Die Geräte lieferten keine Kennzahlen"),
+    Text::of("See the Devices panel, then check again", "Siehe Panel Geräte, dann neu prüfen"),
 ];
 
 const NO_TICKS: [Text; 2] = [
-    Text::of("The control loop sends nothing", "Die Regelung sendet nichts"),
-    Text::of("Start the console again", "Konsole neu starten"),
+    Text::of("The control loop sends no data", "Die Regelung sendet nichts"),
+    Text::of("Restart the console", "Konsole neu starten"),
 ];
 
 const DATE_BEHIND: [Text; 2] = [
@@ -75,7 +76,7 @@ const DATE_BEHIND: [Text; 2] = [
 
 const UNCALIBRATED: [Text; 2] = [
     Text::of(
-        "There is no gravity calibration for this sensor and tool",
+        "No gravity calibration exists for this sensor and tool",
         "Für diesen Sensor mit diesem Instrument fehlt die Schwerkraft-Kalibrierung",
     ),
     Text::of("Calibrate gravity, then check again", "Schwerkraft kalibrieren, dann neu prüfen"),
@@ -84,42 +85,42 @@ const UNCALIBRATED: [Text; 2] = [
 const NO_RIG_FILE: [Text; 2] = [
     Text::of("The rig file cannot be read", "Die Aufbaudatei ist nicht lesbar"),
     Text::of(
-        "Put the rig file back, then start the console again",
-        "Aufbaudatei zurücklegen, dann Konsole neu starten",
+        "Restore the rig file, then restart the console",
+        "Aufbaudatei wiederherstellen, dann Konsole neu starten",
     ),
 ];
 
 const NO_BITE_LOOP: [Text; 2] = [
     Text::of(
-        "The loop was silent on purpose, and the supervisor did nothing",
-        "Die Regelung schwieg absichtlich, und die Überwachung tat nichts",
+        "The test silenced the loop, but the supervisor did not react",
+        "Der Test ließ die Regelung schweigen, aber die Überwachung reagierte nicht",
     ),
-    Text::of("Do not engage; start the console again", "Nicht koppeln; Konsole neu starten"),
+    Text::of("Do not engage; restart the console", "Nicht koppeln; Konsole neu starten"),
 ];
 
 const NO_BITE_SOURCE: [Text; 2] = [
     Text::of(
-        "Measurements were withheld on purpose, and no fault came",
-        "Messwerte wurden absichtlich zurückgehalten, und keine Störung kam",
+        "The test withheld measurements, but no fault was raised",
+        "Der Test hielt Messwerte zurück, aber keine Störung trat auf",
     ),
-    Text::of("Do not engage; start the console again", "Nicht koppeln; Konsole neu starten"),
+    Text::of("Do not engage; restart the console", "Nicht koppeln; Konsole neu starten"),
 ];
 
 const NO_BITE_LINK: [Text; 2] = [
     Text::of(
-        "The link was silent on purpose, and no fault came",
-        "Die Verbindung schwieg absichtlich, und keine \
-     Störung kam",
+        "The test silenced the link, but no fault was raised",
+        "Der Test ließ die Verbindung schweigen, aber keine Störung trat auf",
     ),
-    Text::of("Do not engage; start the console again", "Nicht koppeln; Konsole neu starten"),
+    Text::of("Do not engage; restart the console", "Nicht koppeln; Konsole neu starten"),
 ];
 
-/// Another fault than the one that was to come.
 fn other_fault(fault: Fault) -> [String; 2] {
-    [told!("Another fault was raised: {}", "Eine andere Störung trat auf: {}", fault.cause()), fault.cure().to_owned()]
+    [
+        told!("A different fault was raised: {}", "Eine andere Störung trat auf: {}", fault.cause()),
+        fault.cure().to_owned(),
+    ]
 }
 
-/// The loop did not do what the check asked for.
 fn refused(why: Refusal) -> [String; 2] {
     [
         told!("The loop refused the test: {}", "Die Regelung lehnte den Test ab: {}", refused_because(why)),
@@ -127,7 +128,6 @@ fn refused(why: Refusal) -> [String; 2] {
     ]
 }
 
-/// Too many periods were missed.
 fn missed(share: f64) -> [String; 2] {
     with(
         told!("{:.1} % of the periods were missed", "{:.1} % der Takte wurden versäumt", 100.0 * share),
@@ -135,37 +135,34 @@ fn missed(share: f64) -> [String; 2] {
     )
 }
 
-/// Two clocks do not agree.
 fn clocks_apart(by_s: f64) -> [String; 2] {
     with(
         told!(
-            "The loop's clock and this computer's went apart by {by_s:.2} s",
+            "The clocks of the loop and of this computer drifted apart by {by_s:.2} s",
             "Die Uhren von Regelung und Rechner liefen um {by_s:.2} s auseinander"
         ),
         CLOSE_PROGRAMS.get(),
     )
 }
 
-/// The sensor reads a force where there is none.
 fn bias_moved(by_n: f64, limit_n: f64) -> [String; 2] {
     with(
         told!(
-            "{by_n:.2} N remain at rest, more than {limit_n:.2} N",
-            "{by_n:.2} N bleiben in Ruhe, mehr als {limit_n:.2} N"
+            "{by_n:.2} N remain at rest (limit {limit_n:.2} N)",
+            "{by_n:.2} N bleiben in Ruhe (Grenze {limit_n:.2} N)"
         ),
         word(
-            "Make sure that nothing touches the tool; if it stays, calibrate gravity again",
+            "Make sure that nothing touches the tool; if the force remains, calibrate gravity again",
             "Sicherstellen, dass nichts das Instrument berührt; bleibt es, Schwerkraft neu kalibrieren",
         ),
     )
 }
 
-/// A force at a time without force.
 fn unwanted_force(force_n: f64) -> [String; 2] {
     with(
         told!(
-            "A force of {force_n:.2} N was asked for where there must be none",
-            "{force_n:.2} N wurden verlangt, wo keine Kraft sein darf"
+            "A force of {force_n:.2} N was commanded where none is allowed",
+            "{force_n:.2} N wurden befohlen, wo keine Kraft sein darf"
         ),
         word(
             "Do not engage; report this with the record of the check",
@@ -174,41 +171,38 @@ fn unwanted_force(force_n: f64) -> [String; 2] {
     )
 }
 
-/// The loop and the rig file differ.
 fn other_ceiling(in_force_n: f64, in_file_n: f64) -> [String; 2] {
     with(
         told!(
-            "The largest force is {in_force_n:.2} N; the rig file says {in_file_n:.2} N",
-            "Die Höchstkraft ist {in_force_n:.2} N; laut Aufbaudatei {in_file_n:.2} N"
+            "The force ceiling in use is {in_force_n:.2} N; the rig file has {in_file_n:.2} N",
+            "Die aktive Höchstkraft ist {in_force_n:.2} N; laut Aufbaudatei {in_file_n:.2} N"
         ),
-        word(
-            "Start the console again, so that the rig file is in force",
-            "Konsole neu starten, damit die Aufbaudatei gilt",
-        ),
+        word("Restart the console to apply the rig file", "Konsole neu starten, damit die Aufbaudatei gilt"),
     )
 }
 
-/// One arm went on.
 fn half_stop(side: Side) -> [String; 2] {
     with(
-        told!("The {} arm did not stop with the other one", "Arm {} hielt nicht mit dem anderen an", side_word(side)),
+        told!(
+            "The {} arm did not stop together with the other arm",
+            "Arm {} hielt nicht mit dem anderen an",
+            side_word(side)
+        ),
         STOP_CURE.get(),
     )
 }
 
-/// A watchdog took too long.
 fn late(after_s: f64) -> [String; 2] {
     with(
-        told!("The fault came after {after_s:.2} s, too late", "Die Störung kam nach {after_s:.2} s, zu spät"),
+        told!("The fault was raised after {after_s:.2} s, too late", "Die Störung kam nach {after_s:.2} s, zu spät"),
         CLOSE_PROGRAMS.get(),
     )
 }
 
-/// Somebody engaged an arm.
 fn engaged(side: Side) -> [String; 2] {
     with(
         told!("The {} arm was engaged during the check", "Arm {} wurde während der Prüfung gekoppelt", side_word(side)),
-        word("Let both arms rest, then check again", "Beide Arme in Leerlauf setzen, dann neu prüfen"),
+        word("Set both arms to idle, then check again", "Beide Arme in Leerlauf setzen, dann neu prüfen"),
     )
 }
 
@@ -227,11 +221,11 @@ fn not_released(why: Option<Refusal>) -> [String; 2] {
 }
 
 const CLOSE_PROGRAMS: Text = Text::of(
-    "Close other programs or grant real-time priority (panel Timing), then check again",
+    "Close other programs or grant real-time priority (see the Timing panel), then check again",
     "Andere Programme schließen oder Echtzeitpriorität gewähren (Panel Timing), dann neu prüfen",
 );
 const STOP_CURE: Text = Text::of(
-    "Do not engage; check the key, the pedal or the button with which you stop",
+    "Do not engage; check the key, pedal or button that you use to stop",
     "Nicht koppeln; Taste, Pedal oder Knopf für den Halt prüfen",
 );
 
@@ -243,9 +237,12 @@ fn missing(place: usize, roster: &Roster) -> [String; 2] {
     let trouble = roster.get(place).and_then(|entry| entry.view.report().trouble);
     let name = name(place, roster);
     match trouble {
-        Some(trouble) => [told!("The {name} is not there: {trouble}", "{name} fehlt: {trouble}"), trouble.cure()],
+        Some(trouble) => {
+            let why = quoted(&trouble);
+            [told!("The {name} is missing: {why}", "{name} fehlt: {why}"), trouble.cure()]
+        }
         None => with(
-            told!("The {name} is not there, or does not stay", "{name} fehlt oder bleibt nicht"),
+            told!("The {name} is missing, or drops out", "{name} fehlt oder fällt aus"),
             word("Check plug, cable and power; see Devices", "Stecker, Kabel und Strom prüfen; siehe Geräte"),
         ),
     }
@@ -255,8 +252,8 @@ fn found(place: usize, finding: &nima_machine::rig::checkup::Finding, roster: &R
     let kind = roster.get(place).and_then(|entry| entry.part).map(nima_machine::rig::Part::kind);
     let Some(kind) = kind else {
         return with(
-            word("A device is not in order", "Ein Gerät ist nicht in Ordnung").to_owned(),
-            word("See the panel Devices", "Siehe Panel Geräte"),
+            word("A device has a problem", "Ein Gerät hat ein Problem").to_owned(),
+            word("See the Devices panel", "Siehe Panel Geräte"),
         );
     };
     let [cause, cure] = finding_words(kind, finding);
@@ -279,7 +276,7 @@ fn bias_unseen(why: NotChecked) -> [String; 2] {
         NotChecked::Touched => [
             word("something touched the tool", "etwas berührte das Instrument"),
             word(
-                "Take away what touches the tool, then check again",
+                "Remove whatever touches the tool, then check again",
                 "Entfernen, was das Instrument berührt, dann neu prüfen",
             ),
         ],
@@ -292,17 +289,17 @@ fn bias_unseen(why: NotChecked) -> [String; 2] {
         ],
         NotChecked::Engaged => [
             word("the arm was engaged", "der Arm war gekoppelt"),
-            word("Let both arms rest, then check again", "Beide Arme in Leerlauf setzen, dann neu prüfen"),
+            word("Set both arms to idle, then check again", "Beide Arme in Leerlauf setzen, dann neu prüfen"),
         ],
     };
-    [told!("The bias could not be looked at: {why}", "Der Nullpunkt war nicht prüfbar: {why}"), cure.to_owned()]
+    [told!("The bias could not be checked: {why}", "Der Nullpunkt war nicht prüfbar: {why}"), cure.to_owned()]
 }
 
 fn askew(by_deg: f64) -> [String; 2] {
     let what = if by_deg > 150.0 {
         word("its sign is wrong", "Vorzeichen falsch")
     } else {
-        word("its axes are wrong, or the push was", "Achsen oder Druckrichtung falsch")
+        word("its axes are wrong, or the push went in another direction", "Achsen oder Druckrichtung falsch")
     };
     with(
         told!(
@@ -310,7 +307,8 @@ fn askew(by_deg: f64) -> [String; 2] {
             "Der Druck wurde {by_deg:.0} Grad daneben gemessen: {what}"
         ),
         word(
-            "Repeat the push in the direction asked for; if it stays, calibrate the sensor's mount and gravity again",
+            "Repeat the push in the requested direction; if the error remains, calibrate the sensor mount and \
+             gravity again",
             "Druck in der verlangten Richtung wiederholen; bleibt es, Sensormontage und Schwerkraft neu kalibrieren",
         ),
     )
@@ -319,18 +317,19 @@ fn askew(by_deg: f64) -> [String; 2] {
 fn beside(miss_m: f64) -> [String; 2] {
     let cause = if miss_m.is_finite() {
         told!(
-            "The shaft passes the trocar at {:.0} mm; {:.0} mm would be in it",
-            "Der Schaft geht {:.0} mm am Trokar vorbei; bei {:.0} mm wäre er darin",
+            "The shaft misses the trocar by {:.0} mm (limit {:.0} mm)",
+            "Der Schaft verfehlt den Trokar um {:.0} mm (Grenze {:.0} mm)",
             1e3 * miss_m,
             1e3 * START_MISS_M
         )
     } else {
-        word("The instrument is not through its trocar", "Das Instrument geht nicht durch den Trokar").to_owned()
+        word("The instrument is not inserted in its trocar", "Das Instrument geht nicht durch den Trokar").to_owned()
     };
     with(
         cause,
         word(
-            "Put the instrument through its trocar; if it is, the trocar has moved: calibrate the trocar",
+            "Insert the instrument through its trocar; if it is inserted, the trocar has moved: calibrate the \
+             trocar",
             "Instrument durch den Trokar führen; ist es darin, hat sich der Trokar bewegt: Trokar kalibrieren",
         ),
     )

@@ -1,10 +1,10 @@
-//! Texts: the numbers of a device's readings.
+//! Names of the values in a device's readings.
 
 use nima_machine::rig::PartKind;
 
 use crate::language::{told, word};
 
-/// A tracker's marker by the order of its tools.
+/// Name of a tracker's marker, by the index of its tool.
 pub(crate) fn marker(tool: usize) -> String {
     match tool {
         0 => word("right marker", "Marker rechts").to_owned(),
@@ -14,7 +14,6 @@ pub(crate) fn marker(tool: usize) -> String {
     }
 }
 
-/// A number of a device's readings.
 pub(crate) fn channel_name(kind: PartKind, channel: usize) -> String {
     let axis = ["x", "y", "z"][channel % 3];
     match (kind, channel) {
@@ -32,7 +31,7 @@ pub(crate) fn channel_name(kind: PartKind, channel: usize) -> String {
     }
 }
 
-/// What the rows of a test's table are: a name, the unit, and how many of it a unit of the reading has.
+/// Row of the test's table: name, display unit, and the factor from the reading's SI unit to the display unit.
 pub(crate) fn channel_group(kind: PartKind, channel: usize) -> Option<(&'static str, &'static str, f64)> {
     const DEGREES: f64 = 180.0 / std::f64::consts::PI;
     match (kind, channel) {

@@ -1,4 +1,4 @@
-//! Sentences for what is done to the loop: commands of the operator, devices, calibrations.
+//! Sentences for the operations of a session: operator commands, devices, calibrations.
 
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -12,20 +12,20 @@ use super::modes::mode_name;
 use super::side_word;
 use crate::language::{told, word};
 
-/// What was done to the loop; `devices` as for an [`event`](super::event).
+/// `devices` as for an [`event`](super::event).
 pub(crate) fn operation(operation: &Operation, devices: &[DeviceName]) -> String {
     match *operation {
         Operation::Command { command: of, .. } => told!("command: {}", "Befehl: {}", command(of)),
         Operation::Device(event) => device(&event, devices),
         Operation::Suspend(side) => told!(
-            "{} arm: calibrations suspended, the sensor is not known",
+            "{} arm: calibrations suspended, sensor unknown",
             "Arm {}: Kalibrierungen ausgesetzt, Sensor unbekannt",
             side_word(side)
         ),
         Operation::Calibrations { side, number } => {
             told!(
-                "{} arm: calibrations number {number} handed to the loop",
-                "Arm {}: Kalibrierungen Nr. {number} an die Regelung übergeben",
+                "{} arm: calibration set {number} passed to the loop",
+                "Arm {}: Kalibriersatz {number} an die Regelung übergeben",
                 side_word(side)
             )
         }
@@ -35,7 +35,6 @@ pub(crate) fn operation(operation: &Operation, devices: &[DeviceName]) -> String
     }
 }
 
-/// What the operator asked for.
 pub(crate) fn command(command: Command) -> String {
     match command {
         Command::SetMode(mode) => told!("mode {}", "Modus {}", name_of(mode)),
@@ -61,13 +60,13 @@ pub(crate) fn command(command: Command) -> String {
         Command::Guide(side, Some(at_m)) => {
             let [x, y, z] = [at_m.x, at_m.y, at_m.z].map(|m| m * 1e3);
             told!(
-                "lead the {} handle to {x:.0}, {y:.0}, {z:.0} mm",
+                "guide the {} handle to {x:.0}, {y:.0}, {z:.0} mm",
                 "Handgerät {} nach {x:.0}, {y:.0}, {z:.0} mm führen",
                 side_word(side)
             )
         }
         Command::Guide(side, None) => {
-            told!("lead the {} handle no longer", "Handgerät {} nicht mehr führen", side_word(side))
+            told!("stop guiding the {} handle", "Handgerät {} nicht mehr führen", side_word(side))
         }
         Command::Grip(side, Some(rad)) => {
             told!(
@@ -80,29 +79,29 @@ pub(crate) fn command(command: Command) -> String {
         Command::Grip(side, None) => {
             told!("leave the {} gripper to the hand", "Greifer {} der Hand überlassen", side_word(side))
         }
-        Command::Task(_, Act::Begin) => word("begin the trial anew", "Versuch neu beginnen").to_owned(),
+        Command::Task(_, Act::Begin) => word("restart the trial", "Versuch neu starten").to_owned(),
         Command::Task(side, Act::Mark) => {
             told!("mark the place under the {} tip", "Stelle unter der Spitze {} markieren", side_word(side))
         }
         Command::Task(_, Act::End) => word("end the trial", "Versuch beenden").to_owned(),
-        Command::LetGo(true) => word("the simulated hand lets go", "die simulierte Hand lässt los").to_owned(),
-        Command::LetGo(false) => word("the simulated hand takes hold", "die simulierte Hand fasst an").to_owned(),
+        Command::LetGo(true) => {
+            word("the simulated hand releases the handle", "die simulierte Hand lässt los").to_owned()
+        }
+        Command::LetGo(false) => word("the simulated hand grips the handle", "die simulierte Hand fasst an").to_owned(),
         Command::SetGovernor(true) => word("governor on", "Wächter an").to_owned(),
         Command::SetGovernor(false) => word("governor off", "Wächter aus").to_owned(),
-        Command::SetScale(scale) => told!("scale of motion {scale:.2}", "Bewegungsmaßstab {scale:.2}"),
+        Command::SetScale(scale) => told!("motion scale {scale:.2}", "Bewegungsmaßstab {scale:.2}"),
         Command::Engage => word("engage", "koppeln").to_owned(),
         Command::EngageOne(side) => told!("engage the {} arm", "Arm {} koppeln", side_word(side)),
         Command::Rest => word("rest", "in Leerlauf setzen").to_owned(),
         Command::Stop => word("stop", "anhalten").to_owned(),
         Command::ReleaseStop => word("release the stop", "Halt lösen").to_owned(),
         Command::TestWatchdog(watchdog) => {
-            told!("fire the watchdog of the {}", "Watchdog auslösen: {}", watched(watchdog))
+            told!("trip the watchdog of the {}", "Watchdog auslösen: {}", watched(watchdog))
         }
-        Command::Checked(true) => {
-            word("the ready check of today has passed", "Startprüfung von heute bestanden").to_owned()
-        }
+        Command::Checked(true) => word("today's ready check has passed", "Startprüfung von heute bestanden").to_owned(),
         Command::Checked(false) => {
-            word("no ready check of today has passed", "heute keine Startprüfung bestanden").to_owned()
+            word("no ready check has passed today", "heute keine Startprüfung bestanden").to_owned()
         }
         Command::Shutdown => word("end the loop", "Regelung beenden").to_owned(),
     }

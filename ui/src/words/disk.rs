@@ -1,10 +1,9 @@
-//! Words for a disk that is filling up.
+//! Texts about a disk that is filling up.
 
 use std::time::Duration;
 
 use crate::language::told;
 
-/// The disk of a recording will be full after this time.
 pub(crate) fn disk_full_in(time: Duration) -> String {
     let minutes = time.as_secs_f64() / 60.0;
     let lasts = if minutes < 120.0 { format!("{minutes:.0} min") } else { format!("{:.0} h", minutes / 60.0) };

@@ -9,7 +9,7 @@ use nima_machine::{
 use super::{Remedy as _, commands, device_name, loss_words, refused_because, scheduling_words, side_word, state_name};
 use crate::language::{told, word};
 
-/// What happened; `devices` are the names of the rig's devices, in the order of its roster.
+/// `devices`: names of the rig's devices, in the order of its roster.
 pub(crate) fn event(event: &Event, devices: &[DeviceName]) -> String {
     match *event {
         Event::StateChanged { side, from, to, .. } => {
@@ -37,7 +37,6 @@ pub(crate) fn event(event: &Event, devices: &[DeviceName]) -> String {
     }
 }
 
-/// What became of a device.
 pub(super) fn device(event: &DeviceEvent, devices: &[DeviceName]) -> String {
     let standing = match event.standing {
         Standing::Closed => word("closed", "geschlossen"),
@@ -48,7 +47,7 @@ pub(super) fn device(event: &DeviceEvent, devices: &[DeviceName]) -> String {
     format!("{}: {standing}", name_of(event.device, devices))
 }
 
-/// The name of a device by its place in the roster.
+/// Name of a device by its index in the roster.
 fn name_of(device: u8, devices: &[DeviceName]) -> String {
     devices
         .get(usize::from(device))

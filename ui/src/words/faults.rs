@@ -1,4 +1,4 @@
-//! Texts: the cause of each fault, and what the operator can do.
+//! Causes and remedies of faults.
 
 use nima_core::safety::Implausible;
 use nima_devices::Loss;
@@ -7,23 +7,22 @@ use nima_machine::messages::{FarStop, Fault, ForceSource};
 use super::Remedy;
 use crate::language::word;
 
-/// Why the force at the tip is unknown.
 fn unknown_because(source: ForceSource) -> &'static str {
     match source {
         ForceSource::Uncalibrated => word(
-            "The force at the tip is not known: the wrist sensor is not calibrated for this tool",
+            "The force at the tip is unknown: the wrist sensor is not calibrated for this tool",
             "Die Kraft an der Spitze ist unbekannt: Handgelenksensor nicht für dieses Instrument kalibriert",
         ),
         ForceSource::NoOrientation => word(
-            "The force at the tip is not known: the orientation of the wrist is missing",
+            "The force at the tip is unknown: the orientation of the wrist is missing",
             "Die Kraft an der Spitze ist unbekannt: die Orientierung des Handgelenks fehlt",
         ),
         ForceSource::Poisoned => word(
-            "The force at the tip is not known: the calibration or the network gives invalid numbers",
+            "The force at the tip is unknown: the calibration or the network gives invalid numbers",
             "Die Kraft an der Spitze ist unbekannt: Kalibrierung oder Netz liefert ungültige Zahlen",
         ),
         ForceSource::Unidentified => word(
-            "The force at the tip is not known: the wrist sensor was reconnected",
+            "The force at the tip is unknown: the wrist sensor was reconnected",
             "Die Kraft an der Spitze ist unbekannt: der Handgelenksensor wurde neu verbunden",
         ),
         ForceSource::NoSample
@@ -32,7 +31,7 @@ fn unknown_because(source: ForceSource) -> &'static str {
         | ForceSource::Network
         | ForceSource::Extrapolated
         | ForceSource::InDoubt { .. } => word(
-            "The force at the tip is not known: the devices send no measurement",
+            "The force at the tip is unknown: the devices send no measurement",
             "Die Kraft an der Spitze ist unbekannt: die Geräte senden keine Messung",
         ),
     }
@@ -83,7 +82,7 @@ impl Remedy for Fault {
                 "Zu viele Messwerte des Aufbaus sind verloren oder beschädigt",
             ),
             Self::LinkSilent => word(
-                "No data came over the link for 0.1 s",
+                "No data arrived over the link for 0.1 s",
                 "Über die Verbindung kamen 0.1 s lang \
              keine Daten",
             ),
@@ -126,7 +125,8 @@ impl Remedy for Fault {
                 "Störung des anderen Arms beheben, dann Halt lösen und neu koppeln",
             ),
             Self::SamplesLost => word(
-                "Check the numbers of lost samples in Devices, and the cables; then release the stop and engage again",
+                "Check the counts of lost samples in Devices, and the cables; then release the stop and engage \
+                 again",
                 "Zahl verlorener Messwerte unter Geräte und Kabel prüfen; dann Halt lösen und neu koppeln",
             ),
             Self::LinkSilent => word(
@@ -134,7 +134,7 @@ impl Remedy for Fault {
                 "Verbindung zum Folgearm prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::ClockJumped => word(
-                "Find out what changes this computer's clock, then release the stop and engage again",
+                "Find out what sets this computer's clock, then release the stop and engage again",
                 "Klären, was die Uhr dieses Rechners verstellt, dann Halt lösen und neu koppeln",
             ),
             Self::Implausible { what } => what.cure(),
@@ -147,12 +147,11 @@ impl Remedy for FarStop {
     fn cause(self) -> &'static str {
         match self {
             Self::Stopped => word(
-                "Somebody stopped the follower's machine",
-                "Jemand hat am Rechner des Folgearms \
-             angehalten",
+                "An operator stopped the follower's machine",
+                "Ein Bediener hat am Rechner des Folgearms angehalten",
             ),
             Self::SourceSilent => word(
-                "The follower's machine gets no data, from its devices or from here",
+                "The follower's machine receives no data from its devices or from this machine",
                 "Der Rechner des Folgearms erhält keine Daten, von seinen Geräten oder von hier",
             ),
             Self::LoopStalled => word(
@@ -160,8 +159,8 @@ impl Remedy for FarStop {
                 "Die Regelung am Rechner des Folgearms war blockiert",
             ),
             Self::ForceUnknown => word(
-                "The follower's machine does not know the force at the tip",
-                "Der Rechner des Folgearms kennt die Kraft an der Spitze nicht",
+                "The follower's machine reports that the force at the tip is unknown",
+                "Der Rechner des Folgearms meldet: Kraft an der Spitze unbekannt",
             ),
             Self::DeviceLost => word(
                 "A device of the follower's machine was lost",
@@ -173,11 +172,12 @@ impl Remedy for FarStop {
                 "Der Arm am Rechner des Folgearms folgt seinen Befehlen nicht",
             ),
             Self::SamplesLost => word(
-                "The follower's machine loses too many samples of its devices, or of what is sent from here",
+                "The follower's machine loses too many samples from its devices, or too much data from this \
+                 machine",
                 "Der Rechner des Folgearms verliert zu viele Messwerte seiner Geräte oder zu viele Daten von hier",
             ),
             Self::LinkSilent => word(
-                "No data came over a link within the follower's machine",
+                "No data arrived over a link within the follower's machine",
                 "Über eine Verbindung im Rechner des Folgearms kamen keine Daten",
             ),
             Self::ClockJumped => word(
@@ -198,11 +198,11 @@ impl Remedy for FarStop {
     fn cure(self) -> &'static str {
         match self {
             Self::Stopped => word(
-                "Ask there whether it is safe, then release the stop and engage again",
-                "Dort fragen, ob es sicher ist, dann Halt lösen und neu koppeln",
+                "Ask the operator there whether it is safe, then release the stop and engage again",
+                "Den Bediener dort fragen, ob es sicher ist, dann Halt lösen und neu koppeln",
             ),
             _ => word(
-                "See the screen or the output of the follower's machine for the cause; then release the stop and \
+                "See the screen or output of the follower's machine for the cause; then release the stop and \
                  engage again",
                 "Bildschirm oder Ausgabe des Rechners am Folgearm nennt die Ursache; dann Halt lösen und neu koppeln",
             ),
@@ -264,7 +264,7 @@ impl Remedy for Implausible {
     fn cure(self) -> &'static str {
         match self {
             Self::ForceFrozen | Self::ForceSaturated | Self::ForceRepeats => word(
-                "Unload the force sensor, or switch it off and on again; then release the stop and engage again",
+                "Unload the force sensor, or switch it off and on; then release the stop and engage again",
                 "Kraftsensor entlasten oder aus- und einschalten; dann Halt lösen und neu koppeln",
             ),
             Self::ForceJumped => word(
@@ -291,8 +291,10 @@ impl Remedy for Implausible {
                 "Anschluss und Gelenkwerte des Arms prüfen, dann Halt lösen und neu koppeln",
             ),
             Self::ArmAstray => word(
-                "Check what blocks the arm, its lights and its reach; then release the stop and engage again",
-                "Prüfen: was den Arm blockiert, seine Lampen, seine Reichweite; dann Halt lösen und neu koppeln",
+                "Check whether the arm is blocked or at the end of its reach, and check its lights; then release \
+                 the stop and engage again",
+                "Prüfen, ob der Arm blockiert oder am Ende seiner Reichweite ist, und seine Lampen prüfen; dann \
+                 Halt lösen und neu koppeln",
             ),
         }
     }

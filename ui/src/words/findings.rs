@@ -1,4 +1,4 @@
-//! Texts: what the test of a device finds.
+//! Causes and remedies of the problems that a device test finds.
 
 use nima_machine::rig::{PartKind, checkup::Finding};
 
@@ -9,7 +9,6 @@ use super::{
 };
 use crate::language::{Text, told, word};
 
-/// Cause and cure.
 pub(crate) fn finding_words(kind: PartKind, finding: &Finding) -> [String; 2] {
     let with_unit = |channel: usize, value: f64| {
         let (_, unit, scale) = channel_group(kind, channel).unwrap_or_default();
@@ -38,64 +37,63 @@ pub(crate) fn finding_words(kind: PartKind, finding: &Finding) -> [String; 2] {
 }
 
 const SILENT: [Text; 2] = [
-    Text::of("It sent nothing", "Es hat nichts gesendet"),
+    Text::of("The device sent no data", "Das Gerät hat nichts gesendet"),
     Text::of(
-        "Check cable and power; the line above tells more",
-        "Kabel und Strom prüfen; mehr dazu in der Zeile \
-     darüber",
+        "Check cable and power; see the line above for details",
+        "Kabel und Strom prüfen; Einzelheiten in der Zeile darüber",
     ),
 ];
 const REOPENED: [Text; 2] = [
-    Text::of("It was lost and opened again during the test", "Es fiel während des Tests aus und wurde neu geöffnet"),
+    Text::of(
+        "The device was lost and reconnected during the test",
+        "Das Gerät fiel während des Tests aus und wurde neu verbunden",
+    ),
     Text::of("Check plug and cable, then test again", "Stecker und Kabel prüfen, dann neu testen"),
 ];
 const FROZEN: [Text; 2] = [
-    Text::of("It repeats the same numbers", "Es wiederholt dieselben Zahlen"),
+    Text::of("The device repeats the same values", "Das Gerät wiederholt dieselben Werte"),
     Text::of(
-        "Switch it off and on; if that does not help, it is damaged",
+        "Switch the device off and on; if that does not help, it is damaged",
         "Aus- und einschalten; hilft das nicht, ist es defekt",
     ),
 ];
 
-/// Too slow or too fast.
 fn wrong_rate(hz: f64, nominal_hz: f64) -> [String; 2] {
     let cure = if hz < nominal_hz {
         word(
-            "Check the rate that the device is set to, and what else uses its line or this computer",
+            "Check the rate set on the device, and what else uses its connection or this computer",
             "Eingestellte Rate des Geräts prüfen, und was sonst seine Leitung oder diesen Rechner nutzt",
         )
     } else {
         word(
-            "The device is set to another rate than the rig file says: correct one of them",
+            "The rate set on the device differs from the rate in the rig file: correct one of them",
             "Das Gerät ist auf eine andere Rate eingestellt als in der Aufbaudatei: eine davon berichtigen",
         )
     };
     [
         told!(
-            "It sends {hz:.0} readings per second, not {nominal_hz:.0}",
-            "Es sendet {hz:.0} Messwerte pro Sekunde, nicht {nominal_hz:.0}"
+            "The device sends {hz:.0} readings per second, not {nominal_hz:.0}",
+            "Das Gerät sendet {hz:.0} Messwerte pro Sekunde, nicht {nominal_hz:.0}"
         ),
         cure.to_owned(),
     ]
 }
 
-/// Missing readings.
 fn lost(count: u64) -> [String; 2] {
     [
         told!("{count} readings never arrived", "{count} Messwerte kamen nie an"),
         word(
-            "Check the cable; in a network, connect it without a switch; look at the load of this computer",
+            "Check the cable; on a network, connect the device without a switch; check the load of this computer",
             "Kabel prüfen; im Netzwerk ohne Switch anschließen; Last dieses Rechners prüfen",
         )
         .to_owned(),
     ]
 }
 
-/// Damaged frames.
 fn damaged(count: u64) -> [String; 2] {
     [
         if count == 1 {
-            word("a frame was damaged", "ein Datenrahmen war beschädigt").to_owned()
+            word("1 frame was damaged", "1 Datenrahmen war beschädigt").to_owned()
         } else {
             told!("{count} frames were damaged", "{count} Datenrahmen waren beschädigt")
         },
@@ -107,39 +105,37 @@ fn damaged(count: u64) -> [String; 2] {
     ]
 }
 
-/// Refused readings.
 fn refused(count: u64) -> [String; 2] {
     [
         told!(
-            "{count} readings were refused: overload, or impossible numbers",
-            "{count} Messwerte abgelehnt: Überlast oder unmögliche Zahlen"
+            "{count} readings were refused: overload or impossible values",
+            "{count} Messwerte abgelehnt: Überlast oder unmögliche Werte"
         ),
         word(
-            "Take the load off; if that does not help, switch it off and on",
+            "Remove the load; if that does not help, switch the device off and on",
             "Entlasten; hilft das nicht, aus- und einschalten",
         )
         .to_owned(),
     ]
 }
 
-/// Late readings.
 fn late(kind: PartKind, p99_s: f64, most_s: f64) -> [String; 2] {
     let cure = match kind {
         PartKind::Sensor | PartKind::Servos | PartKind::Tracker => word(
-            "A serial adapter must hand on its bytes after 1 ms (latency_timer: nima devices --udev); else look at the \
-             load of this computer (panel Timing)",
-            "Ein serieller Adapter muss Bytes nach 1 ms weitergeben (latency_timer: nima devices --udev); sonst Last \
-             dieses Rechners prüfen (Panel Timing)",
+            "A serial adapter must forward its bytes within 1 ms (latency_timer: nima devices --udev); otherwise \
+             check the load of this computer (Timing panel)",
+            "Ein serieller Adapter muss Bytes innerhalb von 1 ms weitergeben (latency_timer: nima devices \
+             --udev); sonst Last dieses Rechners prüfen (Panel Timing)",
         ),
         PartKind::Handle | PartKind::Arm | PartKind::Pedal => word(
-            "Look at the load of this computer (panel Timing), and connect the device without a hub or switch",
+            "Check the load of this computer (Timing panel), and connect the device without a hub or switch",
             "Last dieses Rechners prüfen (Panel Timing), Gerät ohne Hub oder Switch anschließen",
         ),
     };
     [
         told!(
-            "One reading in a hundred was {:.0} ms old or older; {:.0} ms would be in order",
-            "Jeder hundertste Messwert war {:.0} ms alt oder älter; in Ordnung wären {:.0} ms",
+            "1 % of the readings were {:.0} ms old or older (limit {:.0} ms)",
+            "1 % der Messwerte waren {:.0} ms alt oder älter (Grenze {:.0} ms)",
             p99_s * 1e3,
             most_s * 1e3
         ),
@@ -147,60 +143,59 @@ fn late(kind: PartKind, p99_s: f64, most_s: f64) -> [String; 2] {
     ]
 }
 
-/// It did not rest.
 fn moved(kind: PartKind, channel: usize) -> [String; 2] {
     [
         told!(
-            "It did not rest ({}): noise and gravity cannot be judged",
-            "Es ruhte nicht ({}): Rauschen und Schwerkraft nicht beurteilbar",
+            "The device was not at rest ({}): noise and gravity cannot be judged",
+            "Das Gerät ruhte nicht ({}): Rauschen und Schwerkraft nicht beurteilbar",
             channel_name(kind, channel)
         ),
-        word("Leave it alone and test again", "In Ruhe lassen und neu testen").to_owned(),
+        word("Keep the device at rest and test again", "Gerät ruhen lassen und neu testen").to_owned(),
     ]
 }
 
-/// Too much noise; both with their unit.
+/// Both values have their unit.
 fn noisy(kind: PartKind, channel: usize, is: &str, most: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Sensor => word(
-            "Look for vibration; check that its mount is tight and its cable shielded and earthed",
+            "Check for vibration; check that the mount is tight and the cable is shielded and earthed",
             "Vibration suchen; prüfen, ob Montage fest und Kabel geschirmt und geerdet ist",
         ),
         PartKind::Tracker => word(
-            "Clean the markers, keep out reflections and sunlight, bring it nearer to the camera",
+            "Clean the markers, avoid reflections and sunlight, and bring them closer to the camera",
             "Marker reinigen, Reflexe und Sonnenlicht fernhalten, näher an die Kamera bringen",
         ),
         _ => word(
-            "Make sure that nothing touches it and that it stands firmly",
+            "Make sure that nothing touches the device and that it stands firmly",
             "Sicherstellen, dass nichts es berührt und es fest steht",
         ),
     };
     [
         told!(
-            "Noise of {}: {is}; at most {most} is usual",
-            "Rauschen von {}: {is}; üblich höchstens {most}",
+            "Noise of {}: {is} (usual limit {most})",
+            "Rauschen von {}: {is} (übliche Grenze {most})",
             channel_name(kind, channel)
         ),
         cure.to_owned(),
     ]
 }
 
-/// No gravity.
 fn gravity(size_m_s2: f64) -> [String; 2] {
     [
         told!(
-            "At rest its accelerometer measures {size_m_s2:.2} m/s\u{b2}, not 9.81",
+            "At rest the accelerometer measures {size_m_s2:.2} m/s\u{b2}, not 9.81",
             "In Ruhe misst der Beschleunigungssensor {size_m_s2:.2} m/s\u{b2}, nicht 9.81"
         ),
         word(
-            "Switch it off and on; if that does not help, calibrations by its accelerometer are not possible",
+            "Switch the sensor off and on; if that does not help, calibrations with its accelerometer are not \
+             possible",
             "Aus- und einschalten; hilft das nicht, sind Kalibrierungen mit dem Beschleunigungssensor unmöglich",
         )
         .to_owned(),
     ]
 }
 
-/// Near the end of a range; both with their unit.
+/// Both values have their unit.
 fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String; 2] {
     let cure = match kind {
         PartKind::Servos => word(
@@ -219,7 +214,6 @@ fn at_the_end(kind: PartKind, channel: usize, is: &str, range: &str) -> [String;
     ]
 }
 
-/// A marker that is not seen.
 fn hidden(tool: usize, share: f64) -> [String; 2] {
     let seen = if share <= 0.0 {
         word("never", "nie").to_owned()
@@ -229,7 +223,8 @@ fn hidden(tool: usize, share: f64) -> [String; 2] {
     [
         told!("The {} was seen {seen}", "{} wurde {seen} gesehen", marker(tool)),
         word(
-            "Clear the view from the camera, turn the marker towards it, check its definition in the rig file",
+            "Clear the camera's line of sight, turn the marker towards the camera, and check the marker's \
+             definition in the rig file",
             "Sicht der Kamera freimachen, Marker zu ihr drehen, seine Definition in der Aufbaudatei prüfen",
         )
         .to_owned(),

@@ -1,4 +1,4 @@
-//! Texts: the source of the force at the tip, and why a gate reduced it.
+//! Texts: source of the tip force, and the reason why a gate reduced it.
 
 use nima_core::{
     safety::Reason,
@@ -15,18 +15,18 @@ impl Words for Reason {
             Self::Open => word("open", "offen"),
             Self::NotPermitted => word("the loop is not engaged", "die Regelung ist nicht gekoppelt"),
             Self::RunsAway => word(
-                "the handle moves as if nobody held it, so the force fades",
+                "the handle moves as if no hand held it, so the force fades",
                 "das Handgerät bewegt sich, als hielte es niemand, die Kraft wird ausgeblendet",
             ),
             Self::LetGo => word(
-                "the hand has let go: no force, the handle is braked",
+                "the hand has released the handle: no force, the handle is braked",
                 "die Hand hat losgelassen: keine Kraft, das Handgerät wird gebremst",
             ),
-            Self::HandGone => word("the hand has let go of the handle", "die Hand hat das Handgerät losgelassen"),
+            Self::HandGone => word("the hand has released the handle", "die Hand hat das Handgerät losgelassen"),
             Self::NothingAsked => word("the mode has no valid result", "der Modus hat kein gültiges Ergebnis"),
             Self::NotFinite => word("the mode's result is not a number", "das Ergebnis des Modus ist keine Zahl"),
             Self::Implausible => word(
-                "the mode asks for more force than any contact can give",
+                "the mode requests more force than any contact can produce",
                 "der Modus verlangt mehr Kraft, als ein Kontakt geben kann",
             ),
             Self::Ageing => word(
@@ -37,7 +37,7 @@ impl Words for Reason {
             Self::TooOld => word("the data are too old", "die Daten sind zu alt"),
             Self::HandSlow => word("the hand is slower than the dead band", "die Hand ist langsamer als das Totband"),
             Self::SpeedUnknown => word(
-                "the speed of the hand is not known",
+                "the speed of the hand is unknown",
                 "die Geschwindigkeit der Hand ist \
              unbekannt",
             ),
@@ -51,11 +51,9 @@ impl Words for Reason {
                 "die Hand bekäme mehr Energie zurück, als sie gab",
             ),
             Self::AboveCeiling => word("the force is above the ceiling", "die Kraft liegt über der Höchstkraft"),
-            Self::AboveDeviceLimit => word(
-                "the force is above what the device can give",
-                "die Kraft liegt über dem, was das Gerät geben \
-                 kann",
-            ),
+            Self::AboveDeviceLimit => {
+                word("the force is above the device's limit", "die Kraft liegt über der Grenze des Geräts")
+            }
         }
     }
 }
@@ -73,19 +71,19 @@ impl Words for ForceSource {
                 "Handgelenkkraft ohne Instrumentengewicht und ohne Trokarreibung (neuronales Netz)",
             ),
             Self::Extrapolated => word(
-                "wrist force without weight and friction, outside the network's training data: less exact",
+                "wrist force without weight and friction, outside the network's training data: less accurate",
                 "Handgelenkkraft ohne Gewicht und Reibung, außerhalb der Trainingsdaten des Netzes: ungenauer",
             ),
             Self::InDoubt { fallback: Fallback::WristForce, .. } => word(
-                "network in doubt: wrist force with trocar friction is used",
+                "network uncertain: wrist force with trocar friction is used",
                 "Netz unsicher: Handgelenkkraft mit Trokarreibung wird benutzt",
             ),
             Self::InDoubt { unsure: Unsure::NotMoved, fallback: Fallback::HoldAndFade } => word(
-                "not known before the instrument has moved: no force",
+                "unknown until the instrument has moved: no force",
                 "unbekannt, bis das Instrument sich bewegt hat: keine Kraft",
             ),
             Self::InDoubt { fallback: Fallback::HoldAndFade, .. } => word(
-                "network in doubt: the last reliable force fades out",
+                "network uncertain: the last reliable force fades out",
                 "Netz unsicher: die letzte zuverlässige Kraft wird ausgeblendet",
             ),
             Self::Uncalibrated => word(
@@ -105,14 +103,14 @@ impl Words for ForceSource {
                 word("unknown: the devices send no measurement", "unbekannt: die Geräte senden keine Messung")
             }
             Self::Unidentified => word(
-                "unknown: the wrist sensor was reconnected and has not told its serial number",
+                "unknown: the wrist sensor was reconnected and has not reported its serial number",
                 "unbekannt: der Handgelenksensor hat seit dem Verbinden keine Seriennummer genannt",
             ),
         }
     }
 }
 
-/// What the operator can do about a force that is unknown for this reason, a clause without a full stop.
+/// Remedy for a tip force that is unknown, a clause without a full stop.
 pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
     match source {
         ForceSource::Uncalibrated => word(
@@ -128,7 +126,7 @@ pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
             "Schwerkraft neu kalibrieren, dann das Netz neu trainieren",
         ),
         ForceSource::Unidentified => word(
-            "wait a moment; if it lasts, disconnect the wrist sensor and connect it again",
+            "wait a moment; if it stays unknown, disconnect and reconnect the wrist sensor",
             "kurz warten; falls es bleibt, Handgelenksensor trennen und neu verbinden",
         ),
         ForceSource::NoSample
@@ -136,9 +134,10 @@ pub(super) fn cure_of_unknown(source: ForceSource) -> &'static str {
         | ForceSource::Wrist
         | ForceSource::Network
         | ForceSource::Extrapolated
-        | ForceSource::InDoubt { .. } => {
-            word("see the devices for what sends nothing and why", "siehe Geräte: was nichts sendet und warum")
-        }
+        | ForceSource::InDoubt { .. } => word(
+            "see the Devices panel for the device that sends no data and the cause",
+            "siehe Panel Geräte: welches Gerät nichts sendet und warum",
+        ),
     }
 }
 
@@ -151,7 +150,7 @@ impl Words for Unsure {
                  Trainingsdaten",
             ),
             Self::NotMoved => word(
-                "the direction of friction is not known yet; move the instrument in or out by 2 mm",
+                "the direction of friction is still unknown; move the instrument in or out by 2 mm",
                 "die Richtung der Reibung ist noch unbekannt; Instrument um 2 mm hinein- oder herausbewegen",
             ),
             Self::Missing => word(

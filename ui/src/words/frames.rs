@@ -1,4 +1,4 @@
-//! Texts about the frame calibrations: why a result got its verdict and what to do, what is missing, and what a session sees.
+//! Texts about the frame calibrations: reasons for verdicts with remedies, missing data, and phases of a session.
 
 use nima_core::calibration::frames::{Cause, Missing, Mistake, Move, Phase, SignedAxes, SignedAxis, Source};
 
@@ -30,7 +30,7 @@ impl Words for Source {
 impl Words for Missing {
     fn words(self) -> &'static str {
         match self {
-            Self::Poses => word("more of them", "weitere"),
+            Self::Poses => word("more of the same", "weitere davon"),
             Self::Turns => word(
                 "larger turns: tilt further to all sides",
                 "größere Drehungen: nach allen Seiten \
@@ -48,7 +48,7 @@ impl Words for Missing {
             Self::SecondTilt => word("tilts to the other sides", "Kippung nach den anderen Seiten"),
             Self::Distance => word("points further apart", "weiter auseinanderliegende Punkte"),
             Self::Beside => {
-                word("a point beside the line through the others", "ein Punkt neben der Linie durch die anderen")
+                word("a point away from the line through the others", "ein Punkt abseits der Linie durch die anderen")
             }
             Self::Directions => word(
                 "other directions: shaft level and up, to all sides",
@@ -62,17 +62,17 @@ impl Words for Missing {
 impl Words for Move {
     fn words(self) -> &'static str {
         match self {
-            Self::Right => word("move to the right in the picture", "im Bild nach rechts bewegen"),
-            Self::Up => word("move up in the picture", "im Bild nach oben bewegen"),
-            Self::Deeper => word("move into the picture", "in das Bild hinein bewegen"),
-            Self::Left => word("move to the left in the picture", "im Bild nach links bewegen"),
-            Self::Down => word("move down in the picture", "im Bild nach unten bewegen"),
-            Self::Back => word("move back, out of the picture", "zurück, aus dem Bild heraus bewegen"),
+            Self::Right => word("move right in the image", "im Bild nach rechts bewegen"),
+            Self::Up => word("move up in the image", "im Bild nach oben bewegen"),
+            Self::Deeper => word("move deeper into the image", "in das Bild hinein bewegen"),
+            Self::Left => word("move left in the image", "im Bild nach links bewegen"),
+            Self::Down => word("move down in the image", "im Bild nach unten bewegen"),
+            Self::Back => word("move back, out of the image", "zurück, aus dem Bild heraus bewegen"),
         }
     }
 }
 
-/// Why a result got its verdict, and what to do.
+/// Reason for a verdict, with the remedy.
 pub(crate) fn cause(cause: &Cause) -> String {
     match cause {
         Cause::Proven => word("accurate on held-out data", "genau auf Testdaten").to_owned(),
@@ -87,8 +87,8 @@ pub(crate) fn cause(cause: &Cause) -> String {
             )
         }
         Cause::OneAxis { second_deg, least_deg } => told!(
-            "it turned about one axis only ({second_deg:.1} of {least_deg:.0} deg about another); turn about another \
-             axis too",
+            "turned about one axis only ({second_deg:.1} of {least_deg:.0} deg about another); turn about \
+             another axis too",
             "nur um eine Achse gedreht ({second_deg:.1} von {least_deg:.0} deg um eine andere); auch um eine andere \
              Achse drehen"
         ),
@@ -100,49 +100,49 @@ pub(crate) fn cause(cause: &Cause) -> String {
                  schwenken"
             )
         }
-        Cause::Collinear { .. } => {
-            word("all lie on one line; add one beside it", "alle liegen auf einer Linie; eine daneben hinzufügen")
-                .to_owned()
-        }
+        Cause::Collinear { .. } => word(
+            "all points are on one line; add one away from it",
+            "alle Punkte liegen auf einer Linie; einen abseits davon hinzufügen",
+        )
+        .to_owned(),
         Cause::OnePlane { .. } => word(
-            "all lie in one plane; add a direction out of it",
-            "alle liegen in einer Ebene; eine Richtung \
-             außerhalb hinzufügen",
+            "all directions are in one plane; add a direction outside it",
+            "alle Richtungen liegen in einer Ebene; eine außerhalb hinzufügen",
         )
         .to_owned(),
         Cause::Weightless { weight_n, least_n } => told!(
-            "the force does not follow gravity ({weight_n:.2} of {least_n:.1} N); check that the sensor reads and that \
-             a tool hangs on it",
+            "the force does not follow gravity ({weight_n:.2} of {least_n:.1} N); check that the sensor works \
+             and carries a tool",
             "die Kraft folgt nicht der Schwerkraft ({weight_n:.2} von {least_n:.1} N); prüfen, ob der Sensor misst und \
              ein Instrument daran hängt"
         ),
         Cause::UncertainPlace { by_m, most_m } => {
             told!(
-                "known to {:.1} mm only, {:.1} mm are allowed; record more",
-                "nur auf {:.1} mm bekannt, {:.1} mm erlaubt; mehr aufzeichnen",
+                "uncertainty {:.1} mm (limit {:.1} mm); record more",
+                "Unsicherheit {:.1} mm (Grenze {:.1} mm); mehr aufzeichnen",
                 by_m * 1e3,
                 most_m * 1e3
             )
         }
         Cause::UncertainAngle { by_deg, most_deg } => {
             told!(
-                "known to {by_deg:.2} deg only, {most_deg:.2} deg are allowed; record more",
-                "nur auf {by_deg:.2} deg bekannt, {most_deg:.2} deg erlaubt; mehr aufzeichnen"
+                "uncertainty {by_deg:.2} deg (limit {most_deg:.2} deg); record more",
+                "Unsicherheit {by_deg:.2} deg (Grenze {most_deg:.2} deg); mehr aufzeichnen"
             )
         }
         Cause::PoorPlace { by_m, most_m } => told!(
-            "the held-out error is {:.1} mm, {:.1} mm are allowed: something moved that should not (tip, marker, \
-             tracker or base); fix it and start over",
-            "der Testfehler ist {:.1} mm, erlaubt sind {:.1} mm: etwas bewegte sich, das fest sein muss (Spitze, \
-             Marker, Tracker oder Basis); beheben und neu beginnen",
+            "the held-out error is {:.1} mm (limit {:.1} mm): something moved that must be fixed (tip, marker, \
+             tracker or base); fasten it and start over",
+            "der Testfehler ist {:.1} mm (Grenze {:.1} mm): etwas bewegte sich, das fest sein muss (Spitze, \
+             Marker, Tracker oder Basis); befestigen und neu beginnen",
             by_m * 1e3,
             most_m * 1e3
         ),
         Cause::PoorAngle { by_deg, most_deg } => told!(
-            "the held-out error is {by_deg:.1} deg, {most_deg:.1} deg are allowed: something moved that should not; \
-             fix it and start over",
-            "der Testfehler ist {by_deg:.1} deg, erlaubt sind {most_deg:.1} deg: etwas bewegte sich, das fest sein \
-             muss; beheben und neu beginnen"
+            "the held-out error is {by_deg:.1} deg (limit {most_deg:.1} deg): something moved that must be \
+             fixed; fasten it and start over",
+            "der Testfehler ist {by_deg:.1} deg (Grenze {most_deg:.1} deg): etwas bewegte sich, das fest sein \
+             muss; befestigen und neu beginnen"
         ),
         Cause::Outliers { share, .. } => {
             told!(
@@ -158,13 +158,13 @@ pub(crate) fn cause(cause: &Cause) -> String {
 fn mistake_words(mistake: Mistake) -> String {
     match mistake {
         Mistake::SwappedMarker => word(
-            "the marker of the other instrument was seen; exchange the two tool definitions in the rig file",
+            "the marker of the other instrument was seen; swap the two tool definitions in the rig file",
             "der Marker des anderen Instruments wurde gesehen; die beiden Tool-Definitionen in der Aufbaudatei \
              tauschen",
         )
         .to_owned(),
         Mistake::SwappedArm => word(
-            "the poses are those of the other arm; exchange the two arms in the rig file",
+            "the poses belong to the other arm; swap the two arms in the rig file",
             "die Posen gehören zum anderen Arm; die beiden Arme in der Aufbaudatei tauschen",
         )
         .to_owned(),
@@ -194,13 +194,13 @@ fn mistake_words(mistake: Mistake) -> String {
         }
         Mistake::WrongAxes(axes) => {
             told!(
-                "the axes are exchanged or reversed: x, y, z are measured as {}; correct the mount",
+                "the axes are swapped or reversed: x, y, z are measured as {}; correct the mount",
                 "die Achsen sind vertauscht oder umgekehrt: x, y, z werden als {} gemessen; Montage berichtigen",
                 axes_words(axes)
             )
         }
         Mistake::Mirrored => word(
-            "the directions fit in a mirror only: two axes are exchanged or one is reversed; check the order",
+            "the directions fit only when mirrored: two axes are swapped or one is reversed; check the order",
             "die Richtungen passen nur gespiegelt: zwei Achsen vertauscht oder eine umgekehrt; Reihenfolge prüfen",
         )
         .to_owned(),
@@ -220,7 +220,7 @@ pub(crate) fn axes_words(SignedAxes(axes): SignedAxes) -> String {
     axes.map(word).join(", ")
 }
 
-/// What the session sees now, with the share of the time that a pose has been held.
+/// Text of the phase, with the fraction (0 to 1) of the required holding time.
 pub(crate) fn phase(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(Some(source)) => (0.0, source.words().to_owned()),
@@ -234,12 +234,16 @@ pub(crate) fn phase(phase: &Phase) -> (f64, String) {
                 by_rad.to_degrees()
             ),
         ),
-        Phase::TakenHere => {
-            (0.0, word("recorded here already: move on", "hier schon aufgezeichnet: weiterbewegen").to_owned())
-        }
+        Phase::TakenHere => (
+            0.0,
+            word("already recorded here: move to the next", "hier schon aufgezeichnet: zum nächsten bewegen")
+                .to_owned(),
+        ),
         Phase::Recording { share } => (*share, word("hold still", "stillhalten").to_owned()),
-        Phase::Recorded { index } => (1.0, told!("{} recorded: move on", "{} aufgezeichnet: weiterbewegen", index + 1)),
-        Phase::Full => (1.0, word("the session is full: go on", "die Sitzung ist voll: weiter").to_owned()),
+        Phase::Recorded { index } => {
+            (1.0, told!("{} recorded: move to the next", "{} aufgezeichnet: zum nächsten bewegen", index + 1))
+        }
+        Phase::Full => (1.0, word("the session is full: continue", "die Sitzung ist voll: weiter").to_owned()),
     }
 }
 

@@ -4,7 +4,6 @@ use nima_core::safety::Gate;
 
 use crate::language::word;
 
-/// Name and meaning of a gate.
 pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
     match gate {
         Gate::Permission => [
@@ -17,15 +16,15 @@ pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
         Gate::Validity => [
             word("Valid", "Gültig"),
             word(
-                "Closed when the mode has no result, when the result is not a finite number, or when it is above 1000 \
-                 N",
+                "Closed when the mode has no result, or the result is not a finite number or exceeds 1000 N",
                 "Geschlossen, wenn der Modus kein Ergebnis hat, es keine endliche Zahl ist oder über 1000 N liegt",
             ),
         ],
         Gate::Age => [
             word("Age", "Alter"),
             word(
-                "Fades the force out when the data are older than the link's own delay, down to zero after this time",
+                "Fades the force out when the data are older than the link's delay; the force is zero after this \
+                 time",
                 "Blendet die Kraft aus, wenn die Daten älter sind als die Verzögerung der Verbindung, bis auf null \
                  nach dieser Zeit",
             ),
@@ -50,15 +49,15 @@ pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
         Gate::Slew => [
             word("Slew", "Anstieg"),
             word(
-                "Limits how fast the force may change, so that no step jerks the hand",
+                "Limits how fast the force changes, so that no step jerks the hand",
                 "Begrenzt, wie schnell sich die Kraft ändert, damit kein Sprung an der Hand ruckt",
             ),
         ],
         Gate::Energy => [
             word("Energy", "Energie"),
             word(
-                "Lets the hand get back the energy that it put in and a little more. When that is used up, it removes \
-    the part of the force along the hand's motion.",
+                "Returns to the hand the energy that the hand put in, and a little more. When that is used up, \
+                 the gate removes the force component along the hand's motion.",
                 "Gibt der Hand die Energie zurück, die sie gab, und etwas mehr. Ist das verbraucht, entfällt der \
                  Kraftanteil entlang der Handbewegung.",
             ),
@@ -66,15 +65,15 @@ pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
         Gate::Ceiling => [
             word("Ceiling", "Höchstkraft"),
             word(
-                "The largest force that can reach the hand, never above what the device can give",
+                "The largest force that can reach the hand, never above the device's limit",
                 "Größte Kraft, die die Hand erreichen kann, nie mehr, als das Gerät geben kann",
             ),
         ],
         Gate::Governor => [
             word("Governor", "Wächter"),
             word(
-                "Brakes a handle that runs away under the force while no hand holds it. The force returns when a hand \
-                 takes hold; if none does, the loop goes to idle.",
+                "Brakes a handle that runs away under the force while no hand holds it. The force returns when a \
+                 hand grips the handle; otherwise the loop goes to idle.",
                 "Bremst ein Handgerät, das unter der Kraft wegläuft, ohne dass eine Hand es hält. Die Kraft kehrt \
                  zurück, wenn eine Hand zufasst; sonst geht die Regelung in den Leerlauf.",
             ),

@@ -1,17 +1,17 @@
-//! What happens to the objects of a scene, in words. People count rings and pegs from 1, data from 0.
+//! Events of the objects of a scene. Texts count rings and pegs from 1, data from 0.
 
 use nima_core::task::Event;
 
 use super::names::side_word;
 use crate::language::{told, word};
 
-/// What happened. An event without a sentence of its own is told by its name and its values.
+/// An event without its own sentence is described by its name and values.
 pub(crate) fn happening(event: &Event) -> String {
     let number = |count: usize| count.saturating_add(1);
     match *event {
-        Event::Begun => word("the trial begins", "der Versuch beginnt").to_owned(),
+        Event::Begun => word("the trial starts", "der Versuch beginnt").to_owned(),
         Event::Ended => word("the task is done", "die Aufgabe ist erledigt").to_owned(),
-        Event::Aborted => word("the trial was given up", "der Versuch wurde abgebrochen").to_owned(),
+        Event::Aborted => word("the trial was aborted", "der Versuch wurde abgebrochen").to_owned(),
         Event::RingGrasped { ring, side } => {
             told!(
                 "ring {} grasped by the {} instrument",

@@ -2,7 +2,7 @@
 //! use the same texts. The libraries contain only the values, so every sentence that a person reads is here or in
 //! `console/text`.
 //!
-//! Causes are sentences; cures say what the operator can do; reasons start in lower case, because they follow a colon.
+//! Causes are sentences; remedies are instructions to the operator; reasons start in lower case, because they follow a colon.
 
 mod calibration;
 mod causes;
@@ -42,16 +42,18 @@ pub(crate) use numbers::{newtons, newtons_in_three, newtons_read, three_digits};
 pub(crate) use ready::{ask_words, check_name, figure_words, lacks_words, unit};
 pub(crate) use refusals::{cure_of_refusal, refused_because};
 
-/// A value with a text for its cause and for its cure.
+/// Message of a library, which is English in every language: a whole sentence, in quotation marks within German text.
+pub(crate) fn quoted(message: &impl std::fmt::Display) -> String {
+    crate::language::told!("{message}", "„{message}“")
+}
+
+/// A value with texts for its cause and its remedy.
 pub(crate) trait Remedy {
-    /// What happened, in one sentence.
+    /// One sentence.
     fn cause(self) -> &'static str;
-    /// What the operator can do.
     fn cure(self) -> &'static str;
 }
 
-/// A value with a short text.
 pub(crate) trait Words {
-    /// The text.
     fn words(self) -> &'static str;
 }

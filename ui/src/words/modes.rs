@@ -14,14 +14,14 @@ pub(crate) fn mode_meaning(mode: Mode) -> &'static str {
     words(mode)[1]
 }
 
-/// Name and explanation. The methods of others are on the screen where the rig file names one.
+/// Name and explanation. Methods of other authors appear on the screen only if the rig file names one.
 fn words(mode: Mode) -> [&'static str; 2] {
     match mode {
         Mode::Literal => [
             word("Literal", "Wörtlich"),
             word(
                 "Exactly as in the paper: renders M X from the hand's own motion, with the degree that has the \
-    smallest error inside the window. Renders no force at standstill.",
+                 smallest error inside the window. Renders no force at standstill.",
                 "Genau wie im Artikel: stellt M X aus der Bewegung der Hand dar, mit dem Grad, der im Fenster den \
                  kleinsten Fehler hat. Im Stillstand keine Kraft.",
             ),
@@ -52,44 +52,43 @@ fn words(mode: Mode) -> [&'static str; 2] {
         Mode::Matched => [
             word("Matched", "Abgeglichen"),
             word(
-                "Only the tissue's parameters cross the link; the force is made from the hand's own motion, so no late \
-                 force can kick",
-                "Nur die Parameter des Gewebes gehen über die Verbindung; die Kraft entsteht aus der Bewegung der \
-                 Hand, so kann keine verspätete Kraft stoßen",
+                "Only the tissue's parameters cross the link; the force is computed from the hand's own motion, \
+                 so no late force can kick",
+                "Nur die Parameter des Gewebes gehen über die Verbindung; die Kraft wird aus der Bewegung der \
+                 Hand berechnet, so kann keine verspätete Kraft stoßen",
             ),
         ],
         Mode::Nima => [
             word("NIMA", "NIMA"),
             word(
-                "The paper's polynomials under the rules of Matched: a constant, a kept origin, a ridge, and degrees \
-                 judged at the horizon",
-                "Die Polynome des Artikels nach den Regeln von Abgeglichen: Konstante, beibehaltener Ursprung, \
-                 Ridge-Term, Grade am Horizont beurteilt",
+                "The paper's polynomials under the rules of Matched: a constant, a fixed origin, ridge \
+                 regularization, and degrees judged by prediction error",
+                "Die Polynome des Artikels nach den Regeln von Abgeglichen: Konstante, fester Ursprung, \
+                 Ridge-Regularisierung, Grade nach Vorhersagefehler beurteilt",
             ),
         ],
         Mode::Best => [
             word("Best of both", "Bestes aus beiden"),
             word(
-                "Anchored and Matched, mixed on each axis by how wrong each was at the leader during the last second; \
-                 the default",
-                "Verankert und Abgeglichen, je Achse danach gemischt, wie falsch jedes in der letzten Sekunde am \
-                 Führungsgerät war; Vorgabe",
+                "Anchored and Matched, mixed on each axis by their prediction errors at the leader during the \
+                 last second; the default",
+                "Verankert und Abgeglichen, je Achse gemischt nach ihrem Vorhersagefehler am Führungsgerät in \
+                 der letzten Sekunde; Vorgabe",
             ),
         ],
         Mode::Baseline(baseline) => of_baseline(baseline),
     }
 }
 
-/// The same of a method of others.
 fn of_baseline(baseline: Baseline) -> [&'static str; 2] {
     match baseline {
         Baseline::ModelMediated => [
             word("Model-mediated", "Modellvermittelt"),
             word(
-                "For comparison: a Hunt-Crossley contact is identified at the tissue; \
-    its parameters cross the link and the force is made from the hand's own motion",
-                "Zum Vergleich: am Gewebe wird ein Hunt-Crossley-Kontakt identifiziert; seine Parameter gehen über die \
-                 Verbindung, die Kraft entsteht aus der Bewegung der Hand",
+                "For comparison: a Hunt-Crossley contact is identified at the tissue; its parameters cross the \
+                 link, and the force is computed from the hand's own motion",
+                "Zum Vergleich: am Gewebe wird ein Hunt-Crossley-Kontakt identifiziert; seine Parameter gehen \
+                 über die Verbindung, die Kraft wird aus der Bewegung der Hand berechnet",
             ),
         ],
         Baseline::Waves => [
@@ -103,8 +102,8 @@ fn of_baseline(baseline: Baseline) -> [&'static str; 2] {
         Baseline::Passivity => [
             word("Time-domain passivity", "Zeitbereichs-Passivität"),
             word(
-                "For comparison: direct reflection with damping whenever the hand would get more \
-    energy than the tissue has returned",
+                "For comparison: direct reflection with damping whenever the hand would receive more energy than \
+                 the tissue has returned",
                 "Zum Vergleich: direkte Reflexion mit Dämpfung, wann immer die Hand mehr Energie bekäme, als das \
                  Gewebe zurückgab",
             ),
@@ -119,7 +118,7 @@ fn of_baseline(baseline: Baseline) -> [&'static str; 2] {
         Baseline::Autoregressive => [
             word("Autoregressive", "Autoregressiv"),
             word(
-                "For comparison: the force foretold from its own past by an autoregressive model",
+                "For comparison: the force predicted from its own past values by an autoregressive model",
                 "Zum Vergleich: die Kraft, aus ihrer eigenen Vergangenheit mit einem autoregressiven Modell \
                  vorhergesagt",
             ),

@@ -1,6 +1,6 @@
-//! Texts: names and short clauses of the libraries that stand within other texts.
+//! Names and short clauses that are used within other texts.
 
-use nima_core::tip_force::GoalKind;
+use nima_core::{kinematics::StartError, tip_force::GoalKind};
 use nima_devices::Loss;
 use nima_machine::{
     messages::{Lack, LoopState, Scheduling},
@@ -9,7 +9,7 @@ use nima_machine::{
 
 use crate::language::{Language, current, told, word};
 
-/// A side as it stands within a sentence: before the noun in English, after it in German.
+/// Side within a sentence: before the noun in English, after it in German.
 pub(crate) fn side_word(side: Side) -> &'static str {
     match side {
         Side::Right => word("right", "rechts"),
@@ -17,7 +17,6 @@ pub(crate) fn side_word(side: Side) -> &'static str {
     }
 }
 
-/// A state of the loop.
 pub(crate) fn state_name(state: LoopState) -> &'static str {
     match state {
         LoopState::Disconnected => word("No device", "Kein Gerät"),
@@ -30,18 +29,17 @@ pub(crate) fn state_name(state: LoopState) -> &'static str {
     }
 }
 
-/// A name as it stands within a sentence: a German noun keeps its capital.
+/// Name within a sentence: lower case in English; a German noun keeps its capital.
 pub(crate) fn within(name: &str) -> String {
     if current() == Language::German { name.to_owned() } else { name.to_lowercase() }
 }
 
-/// A device by its role and make: `right handle (Haply)`.
+/// Device with its role and model: `right handle (Haply)`.
 pub(crate) fn device_name(name: DeviceName) -> String {
     let DeviceName { role, make } = name;
     role_name(role) + &make.map_or_else(String::new, |make| format!(" ({make})"))
 }
 
-/// What a device is in its rig.
 pub(crate) fn role_name(role: DeviceRole) -> String {
     match role {
         DeviceRole::Part(part) => part_name(part),
@@ -49,7 +47,6 @@ pub(crate) fn role_name(role: DeviceRole) -> String {
     }
 }
 
-/// A part of the rig.
 pub(crate) fn part_name(part: Part) -> String {
     match part {
         Part::Handle(side) => told!("{} handle", "Handgerät {}", side_word(side)),
@@ -62,7 +59,6 @@ pub(crate) fn part_name(part: Part) -> String {
     }
 }
 
-/// Why a device was lost.
 pub(crate) fn loss_words(loss: Loss) -> &'static str {
     match loss {
         Loss::Disconnected => word("the connection is gone", "Verbindung getrennt"),
@@ -73,40 +69,40 @@ pub(crate) fn loss_words(loss: Loss) -> &'static str {
     }
 }
 
-/// What is exchanged, a clause without a full stop.
+/// Swapped parts, a clause without a full stop.
 pub(crate) fn exchange_words(exchange: Exchange) -> &'static str {
     match exchange {
         Exchange::Handles => {
-            word("the right and the left handle are exchanged", "rechtes und linkes Handgerät sind vertauscht")
+            word("the right and left handles are swapped", "rechtes und linkes Handgerät sind vertauscht")
         }
         Exchange::Arms => word(
-            "the right and the left arm, or their mounts in the rig file, are exchanged",
+            "the right and left arms, or their mounts in the rig file, are swapped",
             "rechter und linker Arm oder ihre Montage in der Aufbaudatei sind vertauscht",
         ),
         Exchange::Sensors => {
-            word("the right and the left sensor are exchanged", "rechter und linker Sensor sind vertauscht")
+            word("the right and left sensors are swapped", "rechter und linker Sensor sind vertauscht")
         }
         Exchange::Servos => word(
-            "the servos of the right and the left instrument are exchanged",
+            "the servos of the right and left instruments are swapped",
             "die Servos des rechten und des linken Instruments sind vertauscht",
         ),
         Exchange::Markers => word(
-            "the markers of the right and the left instrument are exchanged",
+            "the markers of the right and left instruments are swapped",
             "die Marker des rechten und des linken Instruments sind vertauscht",
         ),
         Exchange::Trocars => word(
-            "the right and the left trocar are exchanged, or the instruments stand in each other's",
-            "rechter und linker Trokar sind vertauscht, oder jedes Instrument steckt im anderen",
+            "the right and left trocars are swapped, or each instrument is in the other's trocar",
+            "rechter und linker Trokar sind vertauscht, oder jedes Instrument steckt im Trokar des anderen",
         ),
     }
 }
 
-/// Why an arm cannot be engaged, a clause without a full stop. Where it stands in its workspace is told by the kinematics, in English.
+/// Reason why an arm cannot be engaged, with its remedy, a clause without a full stop.
 pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
     match obstacle {
-        Obstacle::Start(start) => start.to_string(),
+        Obstacle::Start(start) => start_words(*start),
         Obstacle::Waiting(Awaited::Servos) => {
-            word("the servos have not answered yet", "die Servos haben noch nicht geantwortet").to_owned()
+            word("the servos have not responded yet", "die Servos haben noch nicht geantwortet").to_owned()
         }
         Obstacle::Waiting(Awaited::Markers) => word(
             "the tracker has not seen the markers of both instruments yet",
@@ -115,14 +111,47 @@ pub(crate) fn obstacle_words(obstacle: &Obstacle) -> String {
         .to_owned(),
         Obstacle::Exchanged(exchange) => exchange_words(*exchange).to_owned(),
         Obstacle::FarEnd => word(
-            "the follower's machine says that it cannot: its own screen names the reason",
-            "der Rechner des Folgearms meldet, dass er nicht kann: sein eigener Bildschirm nennt den Grund",
+            "the follower's machine refuses to engage; its screen shows the reason",
+            "der Rechner des Folgearms lehnt das Koppeln ab; sein Bildschirm zeigt den Grund",
         )
         .to_owned(),
     }
 }
 
-/// What a loop lacks for real time, and what to do.
+/// Reason why an arm cannot start from its current position, with the remedy.
+fn start_words(error: StartError) -> String {
+    match error {
+        StartError::Period { period_s } => told!(
+            "the period of the kinematics is {period_s} s, outside its range: use more than 0 and at most 0.02 s",
+            "der Takt der Kinematik ist {period_s} s, außerhalb seines Bereichs: mehr als 0 und höchstens 0.02 s verwenden"
+        ),
+        StartError::ShortShaft { shaft_m, insertion_max_m } => told!(
+            "the shaft of {shaft_m} m is too short for an insertion of {insertion_max_m} m: correct one of them",
+            "der Schaft von {shaft_m} m ist zu kurz für eine Einführtiefe von {insertion_max_m} m: eines davon berichtigen"
+        ),
+        StartError::NotFinite { joint } => told!(
+            "joint {joint} reports an invalid angle: check the arm's connection",
+            "Gelenk {joint} meldet einen ungültigen Winkel: Verbindung des Arms prüfen"
+        ),
+        StartError::AtLimit { joint, angle_deg, limit_deg } => told!(
+            "joint {joint} is at {angle_deg:.1} degrees (limit {limit_deg:.1}): move the arm off the limit by hand",
+            "Gelenk {joint} steht bei {angle_deg:.1} Grad (Grenze {limit_deg:.1}): Arm von Hand von der Grenze weg bewegen"
+        ),
+        StartError::BesideTrocar { miss_m, most_m } => told!(
+            "the shaft's axis misses the trocar by {:.1} mm (limit {:.1} mm): move the arm to the ready pose",
+            "die Schaftachse verfehlt den Trokar um {:.1} mm (Grenze {:.1} mm): Arm in die Startpose bewegen",
+            1e3 * miss_m,
+            1e3 * most_m
+        ),
+        StartError::NotInserted { insertion_m } => told!(
+            "the tip is inserted only {:.1} mm: insert the instrument into the body before starting",
+            "die Spitze ist nur {:.1} mm eingeführt: Instrument vor dem Start in den Körper einführen",
+            1e3 * insertion_m
+        ),
+    }
+}
+
+/// Real-time property that the loop lacks, and the remedy.
 pub(crate) fn lack_words(lack: Lack) -> [&'static str; 2] {
     match lack {
         Lack::Priority => [
@@ -144,19 +173,18 @@ pub(crate) fn lack_words(lack: Lack) -> [&'static str; 2] {
             ),
         ],
         Lack::NotLinux => [
-            word("real-time scheduling is used on Linux only", "Echtzeitpriorität gibt es nur unter Linux"),
+            word("real-time scheduling is available on Linux only", "Echtzeitpriorität gibt es nur unter Linux"),
             word("expect more missed ticks here", "hier sind mehr versäumte Takte zu erwarten"),
         ],
     }
 }
 
-/// The same in one clause.
 pub(crate) fn scheduling_words(scheduling: Scheduling) -> Option<String> {
     let [cause, cure] = lack_words(scheduling.lack()?);
     Some(format!("{cause}: {cure}"))
 }
 
-/// A goal of a tip-force recording by its name, and what to do until it is met.
+/// Name of a goal of a tip-force recording, and the advice until it is met.
 pub(crate) fn goal_words(what: GoalKind) -> [&'static str; 2] {
     match what {
         GoalKind::Tilt => [
@@ -170,10 +198,7 @@ pub(crate) fn goal_words(what: GoalKind) -> [&'static str; 2] {
         ],
         GoalKind::Speed => [
             word("Speed", "Tempo"),
-            word(
-                "make quick strokes in and out, 10 cm/s at their fastest",
-                "schnell hinein- und herausfahren, bis zu 10 cm/s",
-            ),
+            word("make quick strokes in and out, up to 10 cm/s", "schnell hinein- und herausfahren, bis zu 10 cm/s"),
         ],
         GoalKind::Force => [
             word("Force at the tip", "Kraft an der Spitze"),

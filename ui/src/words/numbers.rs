@@ -2,7 +2,7 @@
 
 use crate::language::word;
 
-/// A number with about three digits; large ones in powers of ten.
+/// Number with about three digits; large numbers in powers of ten.
 pub(crate) fn three_digits(value: f64) -> String {
     match value.abs() {
         x if !x.is_finite() => word("not finite", "nicht endlich").to_owned(),
@@ -14,20 +14,20 @@ pub(crate) fn three_digits(value: f64) -> String {
     }
 }
 
-/// Stands in place of a number that is not known.
+/// Sign for an unknown number.
 const UNKNOWN: &str = "–";
 
-/// A force (N) with about three digits and its unit, or the sign for one that is not known.
+/// Force (N) with about three digits and its unit, or the sign for an unknown number.
 pub(crate) fn newtons_in_three(force_n: Option<f64>) -> String {
     force_n.map_or_else(|| UNKNOWN.to_owned(), |force_n| format!("{} N", three_digits(force_n)))
 }
 
-/// A force (N) with this many decimals and its unit, or the sign for one that is not known.
+/// Force (N) with this many decimals and its unit, or the sign for an unknown number.
 pub(crate) fn newtons(force_n: Option<f64>, decimals: usize) -> String {
     force_n.map_or_else(|| UNKNOWN.to_owned(), |force_n| format!("{force_n:.decimals$} N"))
 }
 
-/// The same for a screen reader, which does not read the sign.
+/// Like [`newtons`], for a screen reader, which does not read the sign.
 pub(crate) fn newtons_read(force_n: Option<f64>, decimals: usize) -> String {
     if force_n.is_some() { newtons(force_n, decimals) } else { word("unknown", "unbekannt").to_owned() }
 }

@@ -1,4 +1,4 @@
-//! Texts about the ready check: its points, and what they ask of a person.
+//! Texts about the ready check: its points, and their instructions to the person at the arm.
 
 use nima_machine::{
     messages::Watchdog,
@@ -9,25 +9,22 @@ use nima_machine::{
 use super::{Words as _, side_word};
 use crate::language::{told, word};
 
-/// Name of a point.
 pub(crate) fn check_name(check: Check) -> String {
     let of_arm = |side: Side, words: &str| told!("{} arm: {words}", "{}: {words}", capital(side_word(side)));
     match check {
         Check::Devices => word("Devices present and steady", "Geräte vorhanden und stabil").to_owned(),
         Check::Rates => word("Rates and losses of the devices", "Raten und Verluste der Geräte").to_owned(),
         Check::Clocks => word("Clocks and deadlines", "Uhren und Fristen").to_owned(),
-        Check::Own(side) => of_arm(side, word("arm and marker are its own", "eigener Arm und Marker")),
+        Check::Own(side) => of_arm(side, word("arm and marker belong together", "Arm und Marker gehören zusammen")),
         Check::Bias(side) => of_arm(side, word("drift of the bias", "Drift des Nullpunkts")),
         Check::Push(side) => of_arm(side, word("direction of the force", "Richtung der Kraft")),
         Check::Handle(side) => of_arm(side, word("handle free", "Handgerät frei")),
-        Check::Trocar(side) => of_arm(side, word("trocar where it was", "Trokar am alten Ort")),
-        Check::Ceiling => word("Largest force as in the rig file", "Höchstkraft wie in der Aufbaudatei").to_owned(),
+        Check::Trocar(side) => of_arm(side, word("trocar in its place", "Trokar am alten Ort")),
+        Check::Ceiling => word("Force ceiling as in the rig file", "Höchstkraft wie in der Aufbaudatei").to_owned(),
         Check::Stop => word("Stop", "Halt").to_owned(),
-        Check::Watchdog(Watchdog::Loop) => word("Watchdog over the loop", "Watchdog der Regelung").to_owned(),
-        Check::Watchdog(Watchdog::Source) => {
-            word("Watchdog over the measurements", "Watchdog der Messwerte").to_owned()
-        }
-        Check::Watchdog(Watchdog::Link) => word("Watchdog over the link", "Watchdog der Verbindung").to_owned(),
+        Check::Watchdog(Watchdog::Loop) => word("Watchdog of the loop", "Watchdog der Regelung").to_owned(),
+        Check::Watchdog(Watchdog::Source) => word("Watchdog of the measurements", "Watchdog der Messwerte").to_owned(),
+        Check::Watchdog(Watchdog::Link) => word("Watchdog of the link", "Watchdog der Verbindung").to_owned(),
     }
 }
 
@@ -36,13 +33,13 @@ pub(super) fn capital(word: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// What a person is to do; empty if nothing.
+/// Instruction to the person; empty if there is none.
 pub(crate) fn ask_words(ask: &Ask) -> String {
     match ask {
         Ask::Nothing => String::new(),
         Ask::Move(side) => {
             told!(
-                "Take the {} instrument out of its trocar; if it is out, move it by 10 cm",
+                "Take the {} instrument out of its trocar; if it is already out, move it by 10 cm",
                 "Instrument {} aus dem Trokar nehmen; ist es draußen, um 10 cm bewegen",
                 side_word(*side)
             )
@@ -67,26 +64,26 @@ pub(crate) fn ask_words(ask: &Ask) -> String {
                 way(&direction.into_inner())
             )
         }
-        Ask::LetGo(side) => told!("Let the {} handle go", "Handgerät {} loslassen", side_word(*side)),
+        Ask::LetGo(side) => told!("Release the {} handle", "Handgerät {} loslassen", side_word(*side)),
         Ask::MoveHandle(side, way) => {
             told!(
-                "Take the {} handle and {}, by 2 cm",
+                "Hold the {} handle and {}, by 2 cm",
                 "Handgerät {} fassen und {}, um 2 cm",
                 side_word(*side),
                 way.words()
             )
         }
         Ask::PutBack(side) => told!(
-            "Put the {} instrument through its trocar and leave it there",
+            "Insert the {} instrument through its trocar and leave it there",
             "Instrument {} durch den Trokar führen und dort lassen",
             side_word(*side)
         ),
-        Ask::PressStop => word("Press the stop", "Halt auslösen").to_owned(),
+        Ask::PressStop => word("Press Stop", "Halt drücken").to_owned(),
         Ask::Release => word("Press Release stop", "Halt lösen drücken").to_owned(),
     }
 }
 
-/// The workspace's axis that is nearest to a direction.
+/// Workspace axis nearest to a direction.
 fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     let axis = direction.iamax();
     match (axis, direction[axis] < 0.0) {
@@ -99,7 +96,7 @@ fn way(direction: &nalgebra::Vector3<f64>) -> &'static str {
     }
 }
 
-/// Symbol of a unit; empty for a number of things.
+/// Symbol of a unit; empty for a count.
 pub(crate) fn unit(unit: Unit) -> &'static str {
     match unit {
         Unit::Count => "",
@@ -111,7 +108,6 @@ pub(crate) fn unit(unit: Unit) -> &'static str {
     }
 }
 
-/// What was measured, and its limit.
 pub(crate) fn figure_words(figure: &Figure) -> String {
     let Figure { value, limit, unit: of } = figure;
     match of {
@@ -124,7 +120,6 @@ pub(crate) fn figure_words(figure: &Figure) -> String {
     }
 }
 
-/// Why a point is left out.
 pub(crate) fn lacks_words(lacks: Lacks) -> &'static str {
     match lacks {
         Lacks::Devices => word(
@@ -133,14 +128,14 @@ pub(crate) fn lacks_words(lacks: Lacks) -> &'static str {
          Geräte",
         ),
         Lacks::WristSensor => word("the force is measured at the tip", "die Kraft wird an der Spitze gemessen"),
-        Lacks::OtherArm => word("there is one arm only", "es gibt nur einen Arm"),
-        Lacks::Person => {
-            word("nobody is at the simulated arm in this scene", "in dieser Szene ist niemand am simulierten Arm")
-        }
+        Lacks::OtherArm => word("this rig has only one arm", "dieser Aufbau hat nur einen Arm"),
+        Lacks::Person => word(
+            "no simulated person is at the arm in this scene",
+            "in dieser Szene ist keine simulierte Person am Arm",
+        ),
     }
 }
 
-/// A cause with its cure.
 pub(super) fn with(cause: String, cure: &str) -> [String; 2] {
     [cause, cure.to_owned()]
 }

@@ -1,4 +1,4 @@
-//! Texts: why a command was refused, and what the operator can do.
+//! Reasons and remedies of refused commands.
 
 use nima_machine::{
     messages::{Fault, LoopState, Refusal},
@@ -8,7 +8,7 @@ use nima_machine::{
 use super::{Remedy as _, Words as _, exchange_words, force::cure_of_unknown, obstacle_words};
 use crate::language::{told, word};
 
-/// The reason, a clause without a full stop.
+/// Reason, a clause without a full stop.
 pub(crate) fn refused_because(why: Refusal) -> String {
     match why {
         Refusal::State(state) => in_state(state).to_owned(),
@@ -27,20 +27,21 @@ pub(crate) fn refused_because(why: Refusal) -> String {
         Refusal::Obstacle(obstacle @ Obstacle::FarEnd) => obstacle_words(&obstacle),
         Refusal::Obstacle(Obstacle::Exchanged(exchange)) => exchange_words(exchange).to_owned(),
         Refusal::Obstacle(obstacle) => told!(
-            "the arm cannot start from where it is: {obstacle}",
-            "der Arm kann von hier nicht starten: {obstacle}"
+            "the arm cannot start from its current position: {}",
+            "der Arm kann von hier nicht starten: {}",
+            obstacle_words(&obstacle)
         ),
         Refusal::EndoscopeUnseen => {
             word("the tracker does not see the endoscope", "der Tracker sieht das Endoskop nicht").to_owned()
         }
         Refusal::DrivesOff => {
-            word("the drives did not obey in time", "die Antriebe gehorchten nicht rechtzeitig").to_owned()
+            word("the drives did not respond in time", "die Antriebe reagierten nicht rechtzeitig").to_owned()
         }
         Refusal::Moving => word("the arm was not at rest", "der Arm war nicht in Ruhe").to_owned(),
-        Refusal::HandAbsent => word("nobody holds the handle", "niemand hält das Handgerät").to_owned(),
+        Refusal::HandAbsent => word("no hand holds the handle", "keine Hand hält das Handgerät").to_owned(),
         Refusal::ClutchPressed => word("the clutch is pressed", "die Kupplung ist gedrückt").to_owned(),
         Refusal::NotChecked => word(
-            "this rig requires a ready check, and none of the last 12 hours has passed",
+            "this rig requires a ready check, and none has passed in the last 12 hours",
             "dieser Aufbau verlangt eine Startprüfung, und in den letzten 12 Stunden wurde keine bestanden",
         )
         .to_owned(),
@@ -48,48 +49,52 @@ pub(crate) fn refused_because(why: Refusal) -> String {
             word("the value is outside its range", "der Wert liegt außerhalb seines Bereichs").to_owned()
         }
         Refusal::DelayIsMeasured => word(
-            "the delay is that of the network, which is measured and not set",
-            "die Verzögerung ist die des Netzwerks, gemessen und nicht einstellbar",
+            "the delay is the measured network delay and cannot be set",
+            "die Verzögerung ist die gemessene Netzwerkverzögerung und nicht einstellbar",
         )
         .to_owned(),
-        Refusal::SimulatedOnly => {
-            word("a person may hold the handle of this rig", "an diesem Aufbau kann ein Mensch das Handgerät halten")
-                .to_owned()
-        }
+        Refusal::SimulatedOnly => word(
+            "this command is for simulated rigs only: a person may hold the handle of this rig",
+            "dieser Befehl gilt nur für simulierte Aufbauten: hier kann ein Mensch das Handgerät halten",
+        )
+        .to_owned(),
         Refusal::NoSuchArm => {
             word("this rig has no arm on that side", "dieser Aufbau hat auf dieser Seite keinen Arm").to_owned()
         }
     }
 }
 
-/// What the operator can do, a clause without a full stop.
+/// Remedy, a clause without a full stop.
 pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
     match why {
-        Refusal::State(LoopState::Stopped) => word("release the stop first", "erst Halt lösen"),
-        Refusal::State(LoopState::Faulted(_)) => {
-            word("remove its cause, then release the stop", "ihre Ursache beseitigen, dann Halt lösen")
-        }
-        Refusal::State(LoopState::Disconnected) => {
-            word("see the devices for what is missing and why", "siehe Geräte: was fehlt und warum")
-        }
+        Refusal::State(LoopState::Stopped) => word("press Release stop first", "erst Halt lösen drücken"),
+        Refusal::State(LoopState::Faulted(_)) => word(
+            "remove the cause of the fault, then press Release stop",
+            "Ursache der Störung beseitigen, dann Halt lösen drücken",
+        ),
+        Refusal::State(LoopState::Disconnected) => word(
+            "see the Devices panel for the missing device and the cause",
+            "siehe Panel Geräte: welches Gerät fehlt und warum",
+        ),
         Refusal::State(_) => word("see the state of the loop", "siehe Zustand der Regelung"),
         Refusal::StillPresent(Fault::FarEnd { .. }) => word(
-            "remove its cause there, then press Stop and Release stop here: that releases both machines",
+            "remove the cause there, then press Stop and Release stop here: this releases both machines",
             "Ursache dort beseitigen, dann hier Halt und Halt lösen drücken: das gibt beide Rechner frei",
         ),
         Refusal::StillPresent(_) => word("remove the cause first", "erst die Ursache beseitigen"),
         Refusal::ForceUnknown(source) => cure_of_unknown(source),
-        Refusal::Implausible(_) => word("see the sensor and its cable", "Sensor und sein Kabel prüfen"),
+        Refusal::Implausible(_) => word("check the sensor and its cable", "Sensor und sein Kabel prüfen"),
         Refusal::Obstacle(Obstacle::Exchanged(_)) => word(
-            "put what is exchanged back, in the room or in the rig file; the ready check tells which it is",
-            "Vertauschtes zurücktauschen, im Raum oder in der Aufbaudatei; die Startprüfung nennt es",
+            "undo the swap, on the rig or in the rig file; the ready check shows which parts are swapped",
+            "Vertauschtes zurücktauschen, am Aufbau oder in der Aufbaudatei; die Startprüfung zeigt, was \
+             vertauscht ist",
         ),
         Refusal::Obstacle(Obstacle::Waiting(_)) => word(
             "wait a moment, clear the tracker's view, then engage again",
             "kurz warten, Sicht des Trackers freimachen, dann neu koppeln",
         ),
         Refusal::Obstacle(Obstacle::FarEnd) => word(
-            "remove the reason at the follower's machine, then engage again",
+            "remove the cause at the follower's machine, then engage again",
             "Grund am Rechner des Folgearms beseitigen, dann neu koppeln",
         ),
         Refusal::Obstacle(_) => word("move the arm, then engage again", "Arm bewegen, dann neu koppeln"),
@@ -98,7 +103,7 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
             "Sicht des Trackers auf Endoskop und Arm freimachen, dann neu koppeln",
         ),
         Refusal::DrivesOff => word(
-            "look at the arm's and the handle's own lamps and buttons, then engage again",
+            "check the lamps and buttons on the arm and the handle, then engage again",
             "Lampen und Tasten an Arm und Handgerät ansehen, dann neu koppeln",
         ),
         Refusal::Moving => {
@@ -107,11 +112,11 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
         Refusal::HandAbsent => word("hold the handle, then engage again", "Handgerät halten, dann neu koppeln"),
         Refusal::ClutchPressed => word("release the clutch, then engage again", "Kupplung loslassen, dann neu koppeln"),
         Refusal::NotChecked => {
-            word("press Ready check in the panel Calibration", "im Panel Kalibrierung Startprüfung drücken")
+            word("press Ready check in the Calibration panel", "im Panel Kalibrierung Startprüfung drücken")
         }
         Refusal::OutOfRange => word("choose a value within the range", "einen Wert im Bereich wählen"),
         Refusal::DelayIsMeasured => {
-            word("see the link for what the network takes", "unter Verbindung steht, was das Netzwerk braucht")
+            word("see the Link panel for the network delay", "siehe Panel Verbindung: Verzögerung des Netzwerks")
         }
         Refusal::SimulatedOnly => word("choose a simulated rig", "einen simulierten Aufbau wählen"),
         Refusal::NoSuchArm => word("choose another arm", "einen anderen Arm wählen"),
@@ -121,9 +126,13 @@ pub(crate) fn cure_of_refusal(why: Refusal) -> &'static str {
 fn in_state(state: LoopState) -> &'static str {
     match state {
         LoopState::Disconnected => word("a device is missing", "ein Gerät fehlt"),
-        LoopState::Idle => word("nothing is engaged or stopped", "nichts ist gekoppelt oder angehalten"),
+        LoopState::Idle => {
+            word("the loop is not engaged and not stopped", "die Regelung ist weder gekoppelt noch angehalten")
+        }
         LoopState::Ready => word("an engagement has already begun", "eine Kopplung hat schon begonnen"),
-        LoopState::Engaged | LoopState::Clutched => word("it is already engaged", "es ist schon gekoppelt"),
+        LoopState::Engaged | LoopState::Clutched => {
+            word("the loop is already engaged", "die Regelung ist schon gekoppelt")
+        }
         LoopState::Stopped => word("the stop is latched", "der Halt ist verriegelt"),
         LoopState::Faulted(_) => word("a fault is latched", "eine Störung ist verriegelt"),
     }
@@ -141,7 +150,7 @@ mod tests {
 
     use super::*;
 
-    /// The refusals whose words depend on nothing else.
+    /// Refusals whose text depends on nothing else.
     const REFUSALS: [Refusal; 15] = [
         Refusal::ForceUnknown(ForceSource::Uncalibrated),
         Refusal::ForceUnknown(ForceSource::NoOrientation),

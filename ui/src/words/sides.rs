@@ -1,4 +1,4 @@
-//! Texts: what the ready check finds when the instrument or the handle of one side is moved or pushed.
+//! Texts about the points of the ready check that move or push the instrument or the handle of one side.
 
 use nima_machine::rig::Exchange;
 
@@ -8,32 +8,33 @@ use super::{
 };
 use crate::language::{told, word};
 
-/// Right and left are exchanged: what, and what to do.
 pub(super) fn exchanged(exchange: Exchange) -> [String; 2] {
     let cure = match exchange {
         Exchange::Handles => word(
-            "Exchange Handles in the panel Devices, or put each handle in its place",
-            "Handgeräte im Panel Geräte tauschen, oder jedes Handgerät an seinen Platz stellen",
+            "Press Swap handles in the Devices panel, or put each handle in its place",
+            "Im Panel Geräte Handgeräte tauschen drücken, oder jedes Handgerät an seinen Platz stellen",
         ),
         Exchange::Arms => word(
-            "Exchange the arms' cables, or Arms in the panel Devices; see the mounts in the rig file",
-            "Kabel der Arme tauschen, oder Arme im Panel Geräte; siehe Montage in der Aufbaudatei",
+            "Swap the arms' cables, or press Swap arms in the Devices panel; see the mounts in the rig file",
+            "Kabel der Arme tauschen, oder im Panel Geräte Arme tauschen drücken; siehe Montage in der \
+             Aufbaudatei",
         ),
         Exchange::Sensors => word(
-            "Exchange the sensors' cables, or Sensors in the panel Devices, then calibrate",
-            "Kabel der Sensoren tauschen, oder Sensoren im Panel Geräte, dann kalibrieren",
+            "Swap the sensors' cables, or press Swap sensors in the Devices panel, then calibrate",
+            "Kabel der Sensoren tauschen, oder im Panel Geräte Sensoren tauschen drücken, dann kalibrieren",
         ),
         Exchange::Servos => word(
-            "Exchange the servos' cables, or Servos in the panel Devices",
-            "Kabel der Servos tauschen, oder Servos im Panel Geräte",
+            "Swap the servos' cables, or press Swap servos in the Devices panel",
+            "Kabel der Servos tauschen, oder im Panel Geräte Servos tauschen drücken",
         ),
         Exchange::Markers => word(
-            "Put each marker on its instrument, or exchange the first two tools of [devices.tracker] in the rig file",
+            "Put each marker on its instrument, or swap the first two tools of [devices.tracker] in the rig file",
             "Jeden Marker an sein Instrument setzen, oder die ersten beiden Tools von [devices.tracker] in der \
              Aufbaudatei tauschen",
         ),
         Exchange::Trocars => word(
-            "Put each instrument through its own trocar; if it is, exchange the two [devices.*.rcm] in the rig file",
+            "Insert each instrument through its own trocar; if they are, swap the two [devices.*.rcm] in the rig \
+             file",
             "Jedes Instrument durch seinen Trokar führen; ist es so, die beiden [devices.*.rcm] in der Aufbaudatei \
              tauschen",
         ),
@@ -41,38 +42,37 @@ pub(super) fn exchanged(exchange: Exchange) -> [String; 2] {
     with(capital(exchange_words(exchange)), cure)
 }
 
-/// The arm was not moved, or the other one was too.
 pub(super) fn arm_stuck(by_m: f64) -> [String; 2] {
     with(
         told!(
-            "The arm moved by {:.0} mm, or the other arm moved too",
-            "Der Arm bewegte sich um {:.0} mm, oder der andere auch",
+            "The arm moved {:.0} mm: too little, or the other arm moved too",
+            "Der Arm bewegte sich um {:.0} mm: zu wenig, oder der andere bewegte sich auch",
             1e3 * by_m
         ),
         word(
-            "Move the instrument that is asked for and let the other one rest; if the arm does not follow, see the \
-             panel Devices",
+            "Move the requested instrument and keep the other one at rest; if the arm does not follow, see the \
+             Devices panel",
             "Das verlangte Instrument bewegen, das andere ruhen lassen; folgt der Arm nicht, siehe Panel Geräte",
         ),
     )
 }
 
-/// The marker did not move with its arm, or the other one did too.
 pub(super) fn marker_stuck(by_m: f64) -> [String; 2] {
     with(
         told!(
-            "The marker moved by {:.0} mm while its arm was moved, or the other marker moved too",
-            "Der Marker bewegte sich um {:.0} mm, während sein Arm bewegt wurde, oder der andere Marker auch",
+            "The marker moved {:.0} mm while its arm was moved: too little, or the other marker moved too",
+            "Der Marker bewegte sich um {:.0} mm, während sein Arm bewegt wurde: zu wenig, oder der andere \
+             Marker bewegte sich auch",
             1e3 * by_m
         ),
         word(
-            "Make sure that the tracker sees the markers of both instruments and that the other one rests",
+            "Make sure that the tracker sees the markers of both instruments and that the other instrument is at \
+             rest",
             "Sicherstellen, dass der Tracker die Marker beider Instrumente sieht und das andere ruht",
         ),
     )
 }
 
-/// No push was felt.
 pub(super) fn no_push(most_n: f64) -> [String; 2] {
     with(
         told!(
@@ -86,58 +86,54 @@ pub(super) fn no_push(most_n: f64) -> [String; 2] {
     )
 }
 
-/// The handle moved by itself.
 pub(super) fn handle_pulls(by_m: f64) -> [String; 2] {
     with(
         told!(
-            "Let go, the handle moved by {:.1} mm and did not rest",
-            "Losgelassen bewegte sich das Handgerät um {:.1} mm und ruhte nicht",
+            "After release, the handle moved {:.1} mm and did not come to rest",
+            "Nach dem Loslassen bewegte sich das Handgerät um {:.1} mm und kam nicht zur Ruhe",
             1e3 * by_m
         ),
         word(
-            "Let it go; if it moves by itself, calibrate the handle (button on the device) and check its balance",
+            "Release the handle; if it moves by itself, calibrate it (button on the device) and check its balance",
             "Loslassen; bewegt es sich von selbst, Handgerät kalibrieren (Taste am Gerät) und Gewichtsausgleich prüfen",
         ),
     )
 }
 
-/// The handle was not moved.
 pub(super) fn handle_stuck(by_m: f64) -> [String; 2] {
     with(
-        told!("The handle moved by {:.1} mm only", "Das Handgerät bewegte sich nur um {:.1} mm", 1e3 * by_m),
+        told!("The handle moved only {:.1} mm", "Das Handgerät bewegte sich nur um {:.1} mm", 1e3 * by_m),
         word(
-            "Move the handle; if it is stuck, look for what blocks it and calibrate it (button on the device)",
+            "Move the handle; if it is stuck, find the obstacle, then calibrate the handle (button on the device)",
             "Handgerät bewegen; klemmt es, Ursache suchen und kalibrieren (Taste am Gerät)",
         ),
     )
 }
 
-/// The handle went another way than asked for.
 pub(super) fn handle_askew(by_deg: f64) -> [String; 2] {
     with(
         told!(
-            "The handle's reading moved {by_deg:.0} degrees off the direction asked for",
+            "The handle's reading moved {by_deg:.0} degrees away from the requested direction",
             "Der Messwert des Handgeräts wich {by_deg:.0} Grad von der verlangten Richtung ab"
         ),
         word(
-            "Repeat the move; if it stays, calibrate the view, or see how the handle stands and whether left and right \
-             are exchanged",
+            "Repeat the move; if the error remains, calibrate the view, or check the handle's orientation and \
+             whether left and right are swapped",
             "Bewegung wiederholen; bleibt es, Bildlage kalibrieren oder prüfen, wie das Handgerät steht und ob links \
              und rechts vertauscht sind",
         ),
     )
 }
 
-/// The trocar is not where it was.
 pub(super) fn trocar_moved(by_m: f64) -> [String; 2] {
     with(
         told!(
-            "The trocar is {:.1} mm from where it was, across the shaft",
-            "Der Trokar liegt {:.1} mm neben dem alten Ort, quer zum Schaft",
+            "The trocar has moved {:.1} mm across the shaft",
+            "Der Trokar hat sich {:.1} mm quer zum Schaft bewegt",
             1e3 * by_m
         ),
         word(
-            "Put patient or table back, or calibrate the trocar again",
+            "Move the patient or table back, or calibrate the trocar again",
             "Patient oder Tisch zurückstellen oder Trokar neu kalibrieren",
         ),
     )

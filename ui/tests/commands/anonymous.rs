@@ -1,4 +1,4 @@
-//! `nima export --anonymous`: nothing that tells who, where and when is left, and every force is.
+//! `nima export --anonymous` removes person, time and place, and keeps every force.
 use std::{collections::BTreeMap, path::Path, process::Command, time::UNIX_EPOCH};
 
 use nima_recording::{
@@ -12,7 +12,7 @@ use prost::Message as _;
 
 use crate::export::{done, refused, values};
 
-/// Wherever a person can write a name, one of these is written.
+/// Names planted wherever a person can enter one.
 const PLANTED: [&str; 11] = [
     "Theatre seven",
     "grasper-of-Jane",
@@ -26,7 +26,7 @@ const PLANTED: [&str; 11] = [
     MACHINE,
     LOGIN,
 ];
-/// Names of the computer on which it is recorded and of who is logged in there: they are in no session at all.
+/// Names of the recording computer and its user, which no session contains.
 const MACHINE: &str = "computer-of-jane";
 const LOGIN: &str = "login-of-jane";
 
@@ -61,8 +61,8 @@ fn recorded(folder: &Path) -> String {
     session
 }
 
-/// The program as somebody else runs it on another computer, as far as this system lets a test be that: by all variables that tell it, and
-/// by what the system says its name is.
+/// The program run by another user on another computer, as far as a test can simulate that: all variables with names, and the
+/// system's host name.
 fn elsewhere(arguments: &[&str]) -> Command {
     let rename = format!("hostname {MACHINE} 2>/dev/null || echo {MACHINE} > /proc/sys/kernel/hostname; exec \"$@\"");
     let renames =
@@ -85,7 +85,7 @@ fn elsewhere(arguments: &[&str]) -> Command {
     command
 }
 
-/// The same session with names in every place that a file has.
+/// The same session with names in every possible place of the file.
 fn planted(session: &str, to: &Path) {
     let reader = Reader::open(Path::new(session)).unwrap();
     let all = PLANTED.join(" ");
@@ -136,7 +136,7 @@ fn planted(session: &str, to: &Path) {
     for (channel, words) in [(log, &*all), (log, "command: gain 0.25"), (other_log, &all), (own, &all)] {
         writer.message(channel, begin_ns, &line(words, None)).unwrap();
     }
-    // The text of a line that has a value is made from the value.
+    // The text of a line with a value is generated from the value.
     let lines = reader.messages(&["log"], 0..u64::MAX);
     let mut lines = lines.map(|message| Log::decode(message.unwrap().data()).unwrap());
     let engaged = lines.find(|line| line.message == ENGAGED).unwrap();
@@ -162,7 +162,7 @@ fn planted(session: &str, to: &Path) {
     writer.finish().unwrap();
 }
 
-/// All bytes of a session: the file as it is, and everything in it decompressed.
+/// All bytes of a session: the raw file, and its decompressed content.
 fn all_bytes(path: &Path) -> Vec<u8> {
     let reader = Reader::open(path).unwrap();
     let mut bytes = std::fs::read(path).unwrap();
@@ -190,7 +190,7 @@ fn contains(bytes: &[u8], sought: &[u8]) -> bool {
     memchr::memmem::find(bytes, sought).is_some()
 }
 
-/// Which of the names are in these bytes, in either way of writing letters.
+/// The names found in these bytes, in either encoding.
 fn found(bytes: &[u8]) -> Vec<&'static str> {
     let mut sought = PLANTED.to_vec();
     sought.extend(["Jane", "PLANTED", "jane"]);
@@ -223,7 +223,7 @@ fn no_name_and_no_date_is_left_and_every_force_is() {
         let tables = Reader::open(Path::new(&session)).unwrap().metadata().unwrap();
         let day = tables.iter().find_map(|(_, table)| Some(table.get("started")?[..10].to_owned())).unwrap();
         assert!(!contains(&bytes, day.as_bytes()), "{day}");
-        // The same as a time in a message: seconds in 32 bit.
+        // As a time in a message: seconds in 32 bits.
         let second = i32::try_from(begin_ns / 1_000_000_000).unwrap().to_le_bytes();
         assert!(!contains(&bytes, &second), "{}", path.display());
         assert_eq!(path.metadata().unwrap().modified().unwrap(), UNIX_EPOCH);
@@ -271,7 +271,10 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     let again = at("again.mcap");
     let one = at("one.csv");
     let both = at("both.csv");
-    refused(&["export", &session, "--out", &one, "--arm", "left", "--anonymous"], "--anonymous is for a session");
+    refused(
+        &["export", &session, "--out", &one, "--arm", "left", "--anonymous"],
+        "--anonymous applies only to sessions",
+    );
     done(&["export", &session, "--out", &out, "--anonymous", "--from", "0.5"]);
     done(&["export", &out, "--out", &again, "--from", "1"]);
     for (session, table) in [(&session, &one), (&again, &both)] {
@@ -292,7 +295,7 @@ fn an_anonymous_session_has_a_report_and_a_table_and_can_be_cut_again() {
     let page = std::fs::read(folder.path().join("pages/report.html")).unwrap();
     assert_eq!(found(&page), [""; 0]);
     let page = String::from_utf8(page).unwrap();
-    assert!(page.contains("An anonymous session") && page.contains("Forces of the left arm over time"));
+    assert!(page.contains("Anonymous session") && page.contains("Forces of the left arm over time"));
     let path = folder.path().display().to_string();
     assert!(!page.contains(&path), "the page tells no folder");
 }

@@ -79,7 +79,7 @@ fn what_cannot_be_offered_is_told_in_one_line_with_its_cure() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();
     let line = one_line(&nima(&["run", "--igtl", &address, "--seconds", "1"]));
-    assert!(line.contains(&address) && line.contains("name another one"), "{line}");
+    assert!(line.contains(&address) && line.contains("choose another port"), "{line}");
     let line = one_line(&nima(&["run", "--lsl", "/no/such/liblsl.so", "--seconds", "1"]));
     assert!(line.contains("/no/such/liblsl.so") && line.contains("--lsl FILE"), "{line}");
 }

@@ -23,7 +23,7 @@ fn lens() -> Lens {
     lens
 }
 
-/// A folder with pictures of a board that is held at these poses of the emulator.
+/// A folder with images of a board at these poses of the emulator.
 fn pictures(folder: &Path, poses: impl Iterator<Item = u32>) {
     let board = Board::new([9, 6], 0.01).unwrap();
     let portrait = Portrait::new(&lens());
@@ -39,7 +39,7 @@ fn pictures(folder: &Path, poses: impl Iterator<Item = u32>) {
 fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let folder = tempfile::tempdir().unwrap();
     pictures(folder.path(), 0..18);
-    // Not a board: it is told and left out.
+    // Not a board: it is reported and left out.
     std::fs::write(folder.path().join("99.jpg"), jpeg::encode(&vec![120; 3 * 640 * 360], [640, 360], 90)).unwrap();
     let rig = folder.path().join("rig.toml");
     let mut file = RigFile::of("simulated").unwrap();
@@ -49,7 +49,7 @@ fn a_folder_of_pictures_gives_the_lens_and_changes_the_rig_file() {
     let to = rig.to_str().unwrap();
     let output = nima(&["calibrate", "camera", from, "--square-mm", "10", "--out", to, "--json"]);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success() && told.contains("99.jpg: no board is seen"), "{told}");
+    assert!(output.status.success() && told.contains("99.jpg: no board detected"), "{told}");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["verdict"], "accepted", "{report}");
     assert!(report["lens"]["held_out_px"].as_f64().unwrap() < 0.3, "{report}");
@@ -75,10 +75,10 @@ fn what_cannot_be_used_is_told_in_one_line() {
     for (arguments, word) in [
         (vec![from], "4 usable views of 8"),
         (vec![from, "--out", rig], "has no endoscope"),
-        (vec![from, "--out", "/nowhere/rig.toml"], "is no rig file"),
+        (vec![from, "--out", "/nowhere/rig.toml"], "is not a rig file"),
         (vec![from, "--board", "8x6"], "upside down"),
         (vec![from, "--square-mm", "0"], "0.5 to 200 mm"),
-        (vec!["/nowhere"], "cannot read the pictures in /nowhere"),
+        (vec!["/nowhere"], "cannot read the images in /nowhere"),
         (vec![rig], "cannot read the pictures"),
         (vec!["http://127.0.0.1:1/"], "nobody listens"),
         (vec!["ftp://127.0.0.1/"], "not an address"),

@@ -72,5 +72,5 @@ fn bad_files_are_refused_with_their_place() {
     with("fx_n,fy_n,fz_n,ax,ay\n", "no column \"az\"");
     with("fx_n,fy_n,fz_n,ax,ay,az\n1,2,nan,0,0,9.8\n", "line 2, column \"fz_n\"");
     with("fx_n,fy_n,fz_n,qw,qx,qy,qz\n1,2,3,1,0,0,0\n1,2,3,1,1,0,0\n", "line 3: the quaternion has length 1.414");
-    with("fx_n,fy_n,fz_n,ax,ay,az\n", "there are no poses");
+    with("fx_n,fy_n,fz_n,ax,ay,az\n", "no poses were given");
 }

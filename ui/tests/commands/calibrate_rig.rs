@@ -1,5 +1,5 @@
-//! The paper's rig from boxes to first touch, as a user types it: every calibration of both arms over the emulated wires, then both arms
-//! engaged with all stages in force.
+//! The paper's rig from unpacking to first touch, as a user types it: every calibration of both arms over the emulated
+//! interfaces, then both arms engaged with all stages active.
 #![cfg(target_os = "linux")]
 use std::{
     fs,
@@ -16,13 +16,13 @@ use serde_json::Value;
 
 use super::installed::rig;
 
-/// Largest errors of the force at the tip against the true one, N: mean error per axis in motion, and mean and standard
+/// Maximum errors of the tip force compared with the true force, N: mean error per axis in motion, and mean and standard
 /// deviation without contact.
 const MAE_N: f64 = 0.08;
 const FREE_MEAN_N: f64 = 0.03;
 const FREE_SD_N: f64 = 0.04;
 
-/// A user's own folders, with this rig file.
+/// A user's folders, with this rig file.
 struct Home(tempfile::TempDir);
 
 impl Home {
@@ -50,7 +50,7 @@ impl Home {
             .unwrap()
     }
 
-    /// Runs for some seconds; returns the figures and what was told.
+    /// Runs for some seconds; returns the results and the output.
     fn run(&self, seconds: &str) -> (Value, String) {
         let output = self.nima(&["run", "--rig", "rig.toml", "--seconds", seconds, "--json"]);
         let json = serde_json::from_slice(&output.stdout).unwrap_or_default();
@@ -67,7 +67,7 @@ fn record(sensor: &str, tool: &str) -> GravityRecord {
     GravityRecord { head: RecordHead::new(sensor, tool, &made.head.date), ..made }
 }
 
-/// The rig runs idle, and one line says what is missing and which command cures it.
+/// The rig runs idle, and one line reports the missing calibrations and the command for them.
 #[test]
 fn without_calibrations_the_devices_run_and_one_line_says_what_is_missing() {
     let _alone = alone();
@@ -79,7 +79,7 @@ fn without_calibrations_the_devices_run_and_one_line_says_what_is_missing() {
             too_busy();
         }
         println!("{told}");
-        // A sensor that was opened late adds its own.
+        // A sensor that was opened late adds its own line.
         let all = lines.last().unwrap();
         for words in ["SN000901", "SN000902", "gravity", "nima calibrate rig --rig rig.toml", "the arms stay idle"] {
             assert!(all.contains(words), "{words}: {told}");
@@ -94,14 +94,11 @@ fn a_sensor_or_a_tool_in_anothers_place_is_told_at_the_start() {
     let home = Home::new(&rig());
     home.store().save(&record("SN000901", "Emulated right grasper")).unwrap();
     home.store().save(&record("SN000902", "Emulated left grasper")).unwrap();
-    // The sensors were exchanged; then the tools.
+    // First the sensors are swapped, then the tools.
     let sensors = rig().replace("\"901\"", "\"9\"").replace("\"902\"", "\"901\"").replace("\"9\"", "\"902\"");
     let tools = rig().replace("right grasper", "scissors");
     let cases = [
-        (
-            sensors,
-            ["SN000902 with \"Emulated right grasper\": gravity", "The right and the left sensor, or their tools"],
-        ),
+        (sensors, ["SN000902 with \"Emulated right grasper\": gravity", "The right and left sensors, or their tools"]),
         (tools, ["SN000901 with \"Emulated scissors\": gravity", "not \"Emulated scissors\""]),
     ];
     for (rig, words) in &cases {
@@ -125,7 +122,7 @@ fn three(value: &Value) -> [f64; 3] {
     [0, 1, 2].map(|axis| value[axis].as_f64().unwrap())
 }
 
-/// Checks the errors of both arms; prints them for docs/calibration.md.
+/// Checks the errors of both arms; prints them for docs/results/calibration.md.
 fn judge(figures: &Value) {
     let errors = figures["tip_error"].as_array().unwrap();
     for side in ["right", "left"] {
@@ -172,19 +169,19 @@ fn from_boxes_to_first_touch() {
     });
 }
 
-/// The ready check of the calibrated rig, by the technician at its arms.
+/// The ready check of the calibrated rig, with the technician at its arms.
 fn is_ready(home: &Home) {
     judged(|| {
         let checked = home.nima(&["check", "rig", "--rig", "rig.toml"]);
         let told = String::from_utf8_lossy(&checked.stdout).into_owned();
         println!("{told}");
-        // What a busy machine holds up looks like a bad device.
+        // A delay on a busy machine looks like a bad device.
         if told.lines().any(|line| line.contains("FAILED") && (line.starts_with("Rates") || line.starts_with("Clocks")))
         {
             too_busy();
         }
         assert!(checked.status.success(), "{told}");
-        assert!(!told.contains("left out"), "the rig has every part: {told}");
+        assert!(!told.contains("skipped"), "the rig has every part: {told}");
     });
 }
 

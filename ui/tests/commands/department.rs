@@ -1,4 +1,4 @@
-//! A department of three machines, played by three folders of one: who issues certificates, a rig, and who watches it.
+//! A department of three machines, simulated by three folders: an issuer of certificates, a rig, and a viewer.
 #[cfg(not(feature = "department"))]
 use crate::every_command::nima;
 

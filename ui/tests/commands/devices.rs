@@ -19,7 +19,7 @@ fn a_port_that_is_not_there_and_a_port_where_nobody_listens_are_told_with_their_
     let refused = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success() && refused.contains("2 of 2 devices cannot be used"), "{refused}");
     let told = String::from_utf8(output.stdout).unwrap();
-    for words in ["Plugged in", "/dev/no-such-port is not there", "Plug it in", "nobody listens at 127.0.0.1:1"] {
+    for words in ["Plugged in", "/dev/no-such-port was not found", "Plug it in", "no response from 127.0.0.1:1"] {
         assert!(told.contains(words), "\"{words}\" is not in:\n{told}");
     }
     let output = nima(&["--json", "--probe", "serial=/dev/no-such-port@460800"]);
@@ -40,12 +40,12 @@ fn the_handle_that_leads_a_simulated_rig_is_tested_and_keeps_the_real_clock() {
     let output = nima(&["--rig", path.to_str().unwrap()]);
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(!output.status.success() && told.contains("right handle"), "{told}");
-    assert!(told.contains("/dev/no-such-port is not there"), "{told}");
+    assert!(told.contains("/dev/no-such-port was not found"), "{told}");
     let mut run = Command::new(env!("CARGO_BIN_EXE_nima"));
     run.args(["run", "--virtual", "--seconds", "1", "--rig"]).arg(&path);
     let refused = run.env("NIMA_DATA_DIR", folder.path()).output().unwrap();
     let why = String::from_utf8(refused.stderr).unwrap();
-    assert!(!refused.status.success() && why.contains("remove --virtual"), "{why}");
+    assert!(!refused.status.success() && why.contains("omit --virtual"), "{why}");
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn an_unknown_kind_names_the_known_ones_in_one_line() {
     assert!(!output.status.success() && told.lines().count() == 1 && told.contains("serial=PORT@BAUD"), "{told}");
 }
 
-/// Whoever tests an emulated rig before its emulators run is not sent to look for plugs.
+/// The test of an emulated rig without running emulators must not suggest checking plugs.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_emulated_rig_that_nobody_serves_names_the_command_that_does() {

@@ -1,5 +1,5 @@
-//! The pages for users and contributors against the program: links lead somewhere, commands and flags exist, files that are named are there, and
-//! the glossary has every gate, mode and state.
+//! Checks the pages for users and contributors against the program: links lead somewhere, commands and flags exist, named
+//! files exist, and the glossary has every gate, mode and state.
 
 use std::{
     collections::HashMap,
@@ -20,15 +20,17 @@ fn root() -> PathBuf {
 /// Path and text of every page.
 fn pages() -> Vec<(PathBuf, String)> {
     let mut paths: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md"].map(|name| root().join(name)).to_vec();
-    let docs = std::fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
-    paths.extend(docs.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
-    // The site's list of pages names some that are made for it; a test of its own looks at it.
+    for folder in ["docs", "docs/reference"] {
+        let files = std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());
+        paths.extend(files.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
+    }
+    // The site's list of pages names generated pages; a separate test checks it.
     paths.retain(|path| !path.ends_with("SUMMARY.md"));
     paths.sort();
     paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(path).unwrap())).collect()
 }
 
-/// The anchor that a heading gets.
+/// The anchor of a heading.
 fn anchor(heading: &str) -> String {
     let kept = heading.trim_start_matches('#').trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.collect::<String>().to_lowercase().replace(' ', "-")
@@ -69,8 +71,8 @@ fn the_site_has_every_page() {
     let mut found: Vec<&str> = listed.iter().copied().filter(|page| !outside.contains(page)).collect();
     assert_eq!(listed.len() - found.len(), outside.len());
     let all = pages();
-    let names = all.iter().filter(|(path, _)| path.parent().is_some_and(|folder| folder.ends_with("docs")));
-    let mut pages: Vec<&str> = names.filter_map(|(path, _)| path.file_name()?.to_str()).collect();
+    let docs = root().join("docs");
+    let mut pages: Vec<&str> = all.iter().filter_map(|(path, _)| path.strip_prefix(&docs).ok()?.to_str()).collect();
     found.sort_unstable();
     pages.sort_unstable();
     assert_eq!(found, pages);
@@ -100,7 +102,7 @@ fn every_command_and_flag_in_the_pages_exists() {
     for (page, text) in pages() {
         for command in commands(&text) {
             let words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
-            // Some commands have a second word of their own: `nima study faults`.
+            // Some commands have a second word: `nima study faults`.
             let depth = if ["study", "train", "evaluate", "calibrate", "check", "department", "user-study"]
                 .contains(&words[0].as_str())
             {
@@ -144,7 +146,7 @@ fn every_file_that_the_pages_name_is_there() {
             let ours = ["src/", "ui/", "tests/", "benches/", "config/", "assets/", "docs/"]
                 .iter()
                 .any(|top| code.starts_with(top));
-            // A recipe names what is to be written, and places for names are in capitals or starred.
+            // A recipe names files to be written, and placeholders are in capitals or starred.
             let example = ["Write ", "folder ", "add ", "Add "].iter().any(|verb| before.ends_with(verb))
                 || code.contains(['*', '<', ' '])
                 || code.contains("NAME");

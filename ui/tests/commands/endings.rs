@@ -1,4 +1,4 @@
-//! How commands end: exit code, figures and words, whatever ends them.
+//! Endings of commands: exit code, results and messages, for every cause.
 #![cfg(target_os = "linux")]
 use std::{
     fs,
@@ -31,7 +31,7 @@ fn nima(arguments: &[&str]) -> Command {
         .args(arguments)
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
-        // No calibrations of whoever runs the tests.
+        // Without the calibrations of the user who runs the tests.
         .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -81,7 +81,7 @@ fn catches(pid: u32, signal: u32) -> bool {
     caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() >> (signal - 1) & 1 == 1)
 }
 
-/// The embedded emulated rig as one of real devices, none of which is there.
+/// The embedded emulated rig changed to missing real devices.
 fn absent_rig(folder: &Path) -> PathBuf {
     let text = include_str!("../../../config/rigs/emulated.toml")
         .replace("emulated = true", "emulated = false")
@@ -128,7 +128,7 @@ fn a_run_whose_devices_never_came_fails_and_says_why_all_the_time() {
     let summary: Value = serde_json::from_str(&json).unwrap();
     assert_eq!(summary["final_state"], "disconnected");
     let arm = summary["devices"].as_array().unwrap().iter().find(|device| device["name"] == "right arm").unwrap();
-    assert_eq!(arm["trouble"]["cause"], "nobody listens at 127.0.0.1:52900", "{arm}");
+    assert_eq!(arm["trouble"]["cause"], "no response from 127.0.0.1:52900", "{arm}");
     assert!(arm["trouble"]["cure"].is_string() && arm["outages"] == 0, "{arm}");
 }
 
@@ -152,7 +152,7 @@ fn a_closed_stderr_is_no_reason_to_panic() {
     }
 }
 
-/// Ends a run by this signal once its arm is engaged; `None`: it was held up.
+/// Ends a run by this signal once its arm is engaged; `None`: it was delayed.
 fn ended_by(signal: &str) -> Option<Output> {
     let mut run = Running(nima(&["run", "--scene", "free_motion"]).spawn().unwrap());
     let mut told = BufReader::new(run.0.stderr.take().unwrap());
@@ -183,7 +183,7 @@ fn whatever_signal_ends_a_run_its_figures_are_printed() {
             let told = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{signal}: {} {told}", output.status);
             assert!(figures.contains("right arm ended: Engaged") && figures.contains("work us"), "{signal}: {figures}");
-            assert!(told.contains("nima: ended as asked: force and drives are off"), "{signal}: {told}");
+            assert!(told.contains("nima: ended on request: force and drives are off"), "{signal}: {told}");
         }
     });
 }
@@ -251,7 +251,7 @@ fn an_export_that_is_ended_leaves_nothing_behind() {
         let status = export.ended();
         let mut told = String::new();
         export.0.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended as asked"), "{out}: {told}");
+        assert!(!status.success() && told.lines().count() == 1 && told.contains("ended on request"), "{out}: {told}");
         assert_eq!(there(), ["session.mcap"]);
     }
 }
@@ -308,11 +308,11 @@ fn options_without_a_subcommand_reach_the_console_or_the_run_that_stands_for_it(
     assert_eq!(dev("", &[]), "nima run");
 }
 
-/// Names the rig file of the process that is asked to end, and where it puts its figures.
+/// Names the rig file of the process to end, and the path of its results.
 const RIG: &str = "NIMA_TEST_RIG";
 const SUMMARY: &str = "NIMA_TEST_SUMMARY";
 
-/// The process that the test below asks to end; it starts it.
+/// The process that the test below starts and ends.
 #[test]
 #[ignore = "run by the other test, which ends it"]
 fn the_loop_of_another_process() {
@@ -344,7 +344,7 @@ fn pressing_rig(path: &Path) -> Settings {
     file.save(path).unwrap().devices.unwrap()
 }
 
-/// Waits until the emulated devices are like that.
+/// Waits until the emulated devices reach this state.
 fn come(truth: &dyn Fn() -> Truth, within: Duration, good: impl Fn(&Truth) -> bool) -> bool {
     let began = Instant::now();
     while began.elapsed() < within {

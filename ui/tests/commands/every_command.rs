@@ -14,20 +14,20 @@ pub(crate) fn nima(arguments: &[&str]) -> Output {
         .args(arguments)
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
-        // No calibrations of whoever runs the tests.
+        // Without the calibrations of the user who runs the tests.
         .env("NIMA_DATA_DIR", "/dev/null/no/such/folder")
         .output()
         .unwrap()
 }
 
-/// What a command prints, which must succeed.
+/// Output of a command that must succeed.
 pub(crate) fn json(arguments: &[&str]) -> Value {
     let output = nima(arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Runs a command that must fail with one line that contains all of `words`; gives the line.
+/// Runs a command that must fail with one line that contains all of `words`; returns the line.
 fn refused(arguments: &[&str], words: &[&str]) -> String {
     let output = nima(arguments);
     let text = String::from_utf8(output.stderr).unwrap();
@@ -41,7 +41,7 @@ fn refused(arguments: &[&str], words: &[&str]) -> String {
     text
 }
 
-/// A recording of a hand that presses a soft spring twice a second, at 1 kHz.
+/// A recording of a hand that presses a soft spring twice per second, at 1 kHz.
 fn recording(folder: &Path, name: &str, rows: usize, edit: impl Fn(usize, &mut String)) -> PathBuf {
     let mut text = String::from("t_s,x_m,fx_n\n");
     for i in 0..rows {
@@ -106,7 +106,7 @@ fn a_hole_in_a_recording_is_told_and_nothing_is_made_of_it() {
     assert_eq!(figures["compared"].as_u64(), Some(1900), "the delay fills again after the hole");
     let output = nima(&["identify", hole.to_str().unwrap()]);
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("HOLES                  1, the longest 2.001 s") && !text.contains("NaN"), "{text}");
+    assert!(text.contains("GAPS                   1, the longest 2.001 s") && !text.contains("NaN"), "{text}");
 }
 
 #[test]
@@ -296,7 +296,7 @@ fn every_baseline_runs_in_the_loop_and_over_a_recording() {
 
 #[test]
 fn run_on_the_real_clock_counts_every_period() {
-    // A loop that a busy machine holds up ends in a fault, and counts its periods all the same.
+    // A loop delayed by a busy machine ends in a fault, but still counts its periods.
     let output = nima(&["run", "--seconds", "2", "--json"]);
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     let ticks = summary["ticks"].as_u64().unwrap();

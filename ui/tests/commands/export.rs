@@ -28,7 +28,7 @@ pub(crate) fn record(path: &str, scene: &str, seconds: &str) {
     json(&["run", "--virtual", "--seconds", seconds, "--scene", scene, "--delay-ms", "40", "--record", path, "--json"]);
 }
 
-/// What a topic of an arm says at each time: values by their names.
+/// Content of an arm's topic at each time: values by their names.
 pub(crate) fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<String, f64>> {
     let message = |message: nima_recording::session::Message| {
         let mut read = JointStateDecoder::default();
@@ -38,7 +38,7 @@ pub(crate) fn values(reader: &Reader, topic: &str) -> BTreeMap<u64, BTreeMap<Str
     reader.messages(&[topic], 0..u64::MAX).map(|read| message(read.unwrap())).collect()
 }
 
-/// Every row of a table is what the messages of its time say, to the last bit.
+/// Checks that every row of a table matches the messages of its time bit by bit.
 fn agrees(session: &str, table: &str, arm: &str) -> usize {
     let reader = Reader::open(Path::new(session)).unwrap();
     let topics = ["forces", "poses"].map(|what| values(&reader, &format!("{arm}/{what}")));
@@ -60,7 +60,7 @@ fn agrees(session: &str, table: &str, arm: &str) -> usize {
         let time_ns: u64 = row[1].parse().unwrap();
         for (column, signal) in &columns {
             let said = topics.iter().find_map(|topic| topic[&time_ns].get(signal)).unwrap();
-            // What is not known is an empty field.
+            // An unknown value is an empty field.
             let field = if row[*column].is_empty() { f64::NAN } else { row[*column].parse().unwrap() };
             assert_eq!(field.to_bits(), said.to_bits(), "{signal} at {time_ns}");
         }
@@ -69,7 +69,7 @@ fn agrees(session: &str, table: &str, arm: &str) -> usize {
     rows
 }
 
-/// The figures without the times of this computer.
+/// The results without the times of this computer.
 fn figures(arguments: &[&str]) -> Value {
     let mut figures = json(arguments);
     figures.as_object_mut().unwrap().remove("tick_us").unwrap();
@@ -106,11 +106,11 @@ fn a_table_has_the_values_of_the_messages_and_identify_makes_the_same_of_both() 
 
     refused(&["export", &session, "--out", &at("new.csv")], "choose one with --arm");
     refused(&["identify", &session], "choose one with --arm");
-    refused(&["export", &session, "--out", &left, "--arm", "left"], "it is there already");
-    refused(&["export", &session, "--out", &at("new.txt")], "ends in .csv, .mcap, .json or .xml");
+    refused(&["export", &session, "--out", &left, "--arm", "left"], "it already exists");
+    refused(&["export", &session, "--out", &at("new.txt")], "end in .csv, .mcap, .json or .xml");
     refused(&["export", &session, "--out", &at("new.mcap"), "--arm", "left"], "keeps both arms");
     refused(&["export", &session, "--out", &at("new.csv"), "--arm", "middle"], "right or left");
-    refused(&["export", &session, "--out", &at("new.csv"), "--from", "4.5"], "beyond the end");
+    refused(&["export", &session, "--out", &at("new.csv"), "--from", "4.5"], "after the end");
     refused(&["export", &session, "--out", &at("new.csv"), "--from", "3", "--to", "2"], "is not before --to 2");
     refused(&["export", &session, "--out", &at("no/such/new.mcap")], "cannot write");
     refused(&["identify", &left, "--arm", "left"], "is a table");
@@ -135,8 +135,8 @@ fn a_layout_for_viewers_comes_out_of_a_session_and_stays_in_an_anonymous_one() {
         assert!(text.starts_with(begin) && text.contains("right") && !text.contains("left"), "{text:.300}");
         assert!(text == std::fs::read_to_string(of_shared).unwrap(), "{name} differs in the anonymous session");
     }
-    refused(&["export", &session, "--out", &at("layout.json")], "it is there already");
-    refused(&["export", &session, "--out", &at("other.json"), "--from", "1"], "leave out --arm");
+    refused(&["export", &session, "--out", &at("layout.json")], "it already exists");
+    refused(&["export", &session, "--out", &at("other.json"), "--from", "1"], "omit --arm");
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn studies_make_the_same_of_a_session_and_of_its_table() {
     done(&["export", &session, "--out", &table]);
     let study = |file: &str| json(&["study", "baselines", "--recording", file, "--delay-ms", "50", "--json"]);
     assert_eq!(study(&session), study(&table));
-    // Computing times differ from run to run; what was computed does not.
+    // Computing times differ between runs; results do not.
     let errors = |file: &str| {
         let study = json(&["study", "tradeoff", "--quick", "--recording", file, "--json"]);
         let text = study.to_string();
@@ -221,7 +221,7 @@ fn a_stretch_is_a_session_with_all_that_was_in_it() {
         assert_eq!(told("session_begins_ns"), begin_ns.to_string());
         assert_eq!(told("session"), "s.mcap");
     }
-    // Times in a stretch are those of the session.
+    // Times in an excerpt are those of the session.
     let a = at("a.csv");
     let b = at("b.csv");
     done(&["export", &inner, "--out", &a]);

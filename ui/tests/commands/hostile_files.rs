@@ -1,4 +1,5 @@
-//! Files that a careless or hostile user names: what is read may be no file, what is written may stand for something else.
+//! Files named by a careless or hostile user: an input may not be a regular file, and an output path may point to something
+//! else.
 #![cfg(unix)]
 use std::{
     fmt::Write as _,
@@ -11,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Long enough for a busy machine; what hangs would take for ever.
+/// Long enough for a busy machine; a hang would last for ever.
 const HANGS: Duration = Duration::from_mins(2);
 /// An error line of ours, with a long path in it.
 const LINE_MAX: usize = 2500;
@@ -195,7 +196,7 @@ fn a_recording_may_come_through_a_pipe() {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // The reader may have refused by then.
+        // The reader may have rejected the input by then.
         child.stdin.take().unwrap().write_all(text.as_bytes()).ok();
         child.wait_with_output().unwrap()
     };
@@ -203,7 +204,7 @@ fn a_recording_may_come_through_a_pipe() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let figures: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(figures["samples"], 2000);
-    // A pipe that never breaks its line.
+    // A pipe without line breaks.
     let output = run(&"y".repeat(8 << 20));
     assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("more than 1 MiB"));
 }
@@ -234,7 +235,7 @@ fn no_command_overwrites_what_it_reads() {
         let all = run(&input, &folder.text(&format!("{name}.out")));
         accepted(&all.iter().map(String::as_str).collect::<Vec<_>>());
     }
-    // A calibration keeps what was there before as `.previous`: that may be the input, too.
+    // A calibration keeps the previous file as `.previous`, which may be the input, too.
     let previous = folder.write("g.toml.previous", &poses(0.4));
     let out = folder.write("g.toml", "old");
     refused(&["calibrate", "gravity", &previous, "--out", &out]);
@@ -253,7 +254,7 @@ fn a_folder_of_results_spares_the_inputs_in_it() {
     let line = refused(&["evaluate", "tip-force", &model, &data, "--out", &folder.text(".")]);
     assert!(line.contains("itself"), "{line}");
     assert_eq!(fs::read_to_string(&data).unwrap(), data_set());
-    // The model by a link under the name of a picture.
+    // The model through a link named like a picture.
     let elsewhere = folder.write("e.csv", &data_set());
     fs::create_dir(folder.place("results")).unwrap();
     let before = fs::read(&model).unwrap();
@@ -273,10 +274,10 @@ fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
     let identify = |out: &str| ["identify", &input, "--out", out].map(str::to_owned);
     let refuse = |out: &str| refused(&identify(out).each_ref().map(String::as_str));
     let fifo = folder.fifo("fifo");
-    assert!(refuse(&fifo).contains("a pipe is there and is left as it is"));
-    assert!(refuse(&folder.link("to nothing", "nowhere")).contains("a link to a file that is not there"));
-    assert!(refuse(&folder.text(".")).contains("a folder is there"));
-    // A device like /dev/null, which only root can make.
+    assert!(refuse(&fifo).contains("a pipe exists and is never replaced"));
+    assert!(refuse(&folder.link("to nothing", "nowhere")).contains("a link to a file that does not exist"));
+    assert!(refuse(&folder.text(".")).contains("a folder exists"));
+    // A device like /dev/null, which only root can create.
     let device = folder.text("null");
     if Command::new("mknod")
         .args([&device, "c", "1", "3"])
@@ -285,7 +286,7 @@ fn an_existing_output_is_refused_followed_or_keeps_its_mode() {
         .is_ok_and(|made| made.success())
     {
         let before = fs::metadata(&device).unwrap();
-        assert!(refuse(&device).contains("a device is there"));
+        assert!(refuse(&device).contains("a device exists"));
         let after = fs::metadata(&device).unwrap();
         assert_eq!((before.ino(), before.mode()), (after.ino(), after.mode()));
     }

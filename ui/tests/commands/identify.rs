@@ -1,4 +1,4 @@
-//! `nima identify` over several recordings, over three axes that are named at once, and with the leader's own motion.
+//! `nima identify` over several recordings, over three axes named at once, and with the leader's own motion.
 
 use std::{
     fmt::Write as _,
@@ -12,7 +12,8 @@ use crate::{
     one_line,
 };
 
-/// A hand that presses a spring of this stiffness (N/m) on three axes, in mm and N under names of another program; `h` is the leader, 20 ms ahead.
+/// A hand that presses a spring of this stiffness (N/m) on three axes, in mm and N with another program's column names; `h`
+/// is the leader, 20 ms ahead.
 fn recording(folder: &Path, name: &str, stiffness_n_m: f64) -> PathBuf {
     let at_m = |i: usize| [7.0, 4.4, 12.0].map(|rad_s: f64| 0.01 * (rad_s * i as f64 * 1e-3).sin());
     let mut text = String::from("t_s,px,py,pz,a,b,c,hx,hy,hz\n");
@@ -49,7 +50,7 @@ fn several_recordings_are_those_of_each_and_a_summary() {
         let mut figures = figures.clone();
         assert_eq!(figures["recording"], name);
         figures.as_object_mut().unwrap().remove("recording");
-        // What differs from run to run: how long a tick took.
+        // Only the computing time of a tick differs between runs.
         for figures in [&mut alone, &mut figures] {
             figures.as_object_mut().unwrap().remove("tick_us").unwrap();
         }
@@ -95,10 +96,10 @@ fn what_cannot_be_mapped_or_written_is_one_line() {
     let out = folder.path().join("trace.csv");
     let study = ["study", "baselines", "--recording", name, "--map", "lx=hx", "--out", folder.path().to_str().unwrap()];
     for (arguments, words) in [
-        (with(&[name, name], &["--out", out.to_str().unwrap()]), "--out writes the samples of one recording"),
+        (with(&[name, name], &["--out", out.to_str().unwrap()]), "--out writes the samples of a single recording"),
         (
             vec!["identify", name, "--map", "xyz=px,py"],
-            "\"xyz\" takes three columns, for example xyz=A,B,C*0.001; 2 given",
+            "\"xyz\" takes three columns, not 2; write for example xyz=A,B,C*0.001",
         ),
         (vec!["identify", name, "--map", "uvw=a,b,c"], "there is no quantity \"uvw\""),
         (with(&[name], &["--map", "lx=hx"]), "no column \"ly_m\" for leader's motion"),

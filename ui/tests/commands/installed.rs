@@ -1,4 +1,4 @@
-//! `nima` alone, as it is installed: copied to a folder where nothing else is.
+//! `nima` alone, as installed: copied to an otherwise empty folder.
 #![cfg(target_os = "linux")]
 use std::{
     fs,
@@ -14,7 +14,7 @@ use serde_json::Value;
 /// Ports of the embedded rig.
 const PORTS: [u16; 9] = [47130, 47100, 47101, 47131, 47110, 47111, 47140, 47120, 47160];
 
-/// The embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs nobody.
+/// The embedded emulated rig on ports that are free for TCP and UDP, so that it disturbs no other process.
 pub(crate) fn rig() -> String {
     let mut text = include_str!("../../../config/rigs/emulated.toml").to_owned();
     // All are held until the last is chosen, so that no two are the same.
@@ -36,7 +36,7 @@ pub(crate) fn rig() -> String {
     text
 }
 
-/// Readings of both handles and both arms while it ran for three seconds, and what it told.
+/// Readings of both handles and both arms during a run of three seconds, and its output.
 fn run(folder: &Path) -> (Vec<u64>, String) {
     fs::write(folder.join("rig.toml"), rig()).unwrap();
     let output = Command::new(folder.join("nima"))
@@ -66,9 +66,9 @@ fn the_emulated_rig_runs_with_nothing_beside_the_program() {
     judged(|| {
         let (readings, told) = run(folder.path());
         println!("readings of both handles and both arms: {readings:?}\n{told}");
-        // No load brings these about; only another program may have taken a port in between.
-        for words in ["not installed", "cannot be used", "cannot be emulated"] {
-            assert!(!told.contains(words) || told.contains("used by another program"), "{told}");
+        // Load cannot cause these; another program may have taken a port in between.
+        for words in ["not installed", "cannot be used", "cannot emulate"] {
+            assert!(!told.contains(words) || told.contains("in use by another program"), "{told}");
         }
         if readings.iter().any(|readings| *readings <= 100) {
             too_busy();

@@ -1,5 +1,5 @@
-//! Every text of the window stands in English and German side by side. The compiler asks for both; this test reads the sources and asks
-//! whether the German is German.
+//! Every text of the window is in the sources in English and German. The compiler requires both; this test checks that the
+//! German is German.
 
 use std::path::{Path, PathBuf};
 
@@ -36,10 +36,10 @@ const SAME: [&str; 27] = [
     "Training",
 ];
 
-/// What begins a pair of literals.
+/// Start of a pair of literals.
 const BEGINNINGS: [&str; 3] = ["Text::of(", "word(", "told!("];
 
-/// The pairs in a source, with continued literals in one.
+/// The pairs in a source, with continued literals joined.
 pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
     let mut pairs = Vec::new();
     for beginning in BEGINNINGS {
@@ -56,7 +56,7 @@ pub(crate) fn pairs(source: &str) -> Vec<[String; 2]> {
     pairs
 }
 
-/// The literal at the beginning of this, and what comes after it.
+/// The literal at the start of this, and the rest.
 fn literal(source: &str) -> Option<(String, &str)> {
     let rest = source.trim_start().strip_prefix('"')?;
     let mut escaped = false;
@@ -95,7 +95,7 @@ fn all_pairs() -> Vec<[String; 2]> {
     all
 }
 
-/// What stands between braces, in the order of the alphabet; a side after its noun is `after` in German, in lower case.
+/// The content of braces, sorted; a side after its noun is `after` in German, in lower case.
 fn values(text: &str) -> Vec<String> {
     let plain = text.replace("{{", "").replace("}}", "");
     let plain = plain.replace("{side}", "{after}").replace("{arm}", "{after}");
@@ -128,7 +128,7 @@ fn both_languages_tell_the_same_values() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// A text with one language compiles where it is no pair at all.
+/// A text with only one language compiles if it is not in a pair.
 #[test]
 fn every_text_with_words_is_a_pair() {
     let mut wrong = Vec::new();

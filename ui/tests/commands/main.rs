@@ -1,4 +1,4 @@
-//! The command line as a user types it, and the pages and sources that must agree with it.
+//! The command line as a user types it, and the pages and sources that must match it.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod anonymous;
@@ -22,6 +22,7 @@ mod packages;
 mod paper_rig;
 mod replay;
 mod report;
+mod results;
 mod rings;
 mod score;
 mod sessions;
@@ -30,7 +31,7 @@ mod two_machines;
 mod user_study;
 mod words;
 
-/// What a command that failed says, in its one line.
+/// The one line of a failed command.
 fn one_line(output: &std::process::Output) -> String {
     let text = String::from_utf8(output.stderr.clone()).unwrap();
     assert!(!output.status.success());

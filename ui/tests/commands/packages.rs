@@ -1,4 +1,4 @@
-//! What a package installs beside the program: completions, manual pages, and the texts of all licences.
+//! Files that a package installs in addition to the program: completions, manual pages, and the texts of all licences.
 
 use std::{
     collections::BTreeSet,
@@ -22,7 +22,7 @@ fn commands() -> BTreeSet<String> {
     let help = printed(&["--help"]);
     let (_, list) = help.split_once("Commands:\n").unwrap();
     let (list, _) = list.split_once("\n\n").unwrap();
-    // A line that goes on with an explanation begins farther to the right.
+    // A line that continues an explanation is indented further.
     let names = list.lines().filter_map(|line| line.strip_prefix("  ")).filter(|line| !line.starts_with(' '));
     let names: BTreeSet<_> = names.filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect();
     assert!(names.len() > 20, "{names:?}");
@@ -36,7 +36,7 @@ fn bash_completes_commands_options_and_values() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("nima");
     fs::write(&file, script).unwrap();
-    // As bash calls it: the words so far, the last one begun.
+    // As bash calls it: the words so far, the last one incomplete.
     let completed = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
         let quoted: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();
@@ -91,7 +91,7 @@ fn every_command_has_a_manual_page() {
     let before = page("nima-run");
     printed(&["man", folder.to_str().unwrap()]);
     assert_eq!(page("nima-run"), before, "the same program writes the same page");
-    // What stands in the way is told.
+    // An obstacle is reported.
     let told = crate::one_line(&nima(&["man", folder.join("nima.1").to_str().unwrap()]));
     assert!(told.contains("nima.1"), "{told}");
 }
@@ -100,7 +100,7 @@ fn every_command_has_a_manual_page() {
 #[cfg(target_os = "linux")]
 type Files = &'static [(&'static str, &'static str)];
 
-/// The script that lists what is in the program, over crates that are in `folder`: their names, licences, and licence files.
+/// The script that lists the content of the program, for crates in `folder`: their names, licences, and licence files.
 #[cfg(target_os = "linux")]
 fn inventory(folder: &Path, crates: &[(&str, &str, Files)]) -> Output {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -181,7 +181,7 @@ fn the_list_of_what_is_inside_names_every_crate_with_its_checksum() {
     assert_eq!(bom["components"][0]["hashes"][0]["content"], "ab12");
     let whole = bom["dependencies"].as_array().unwrap().iter().find(|one| one["ref"] == "pkg:cargo/nima-console@1.0.0");
     assert_eq!(whole.unwrap()["dependsOn"], json!(["pkg:cargo/a@1.0.0", "pkg:cargo/b@1.0.0"]));
-    // One text that two crates share stands there once.
+    // A text that two crates share occurs once.
     let texts = fs::read_to_string(folder.path().join("out/third-party.txt")).unwrap();
     assert_eq!(texts.matches("One text.").count(), 1);
     let before = read();

@@ -1,4 +1,4 @@
-//! The paper's rig where none of its devices is there, in a network namespace that this test makes: nothing is sent to an address outside.
+//! The paper's rig with all devices missing, in a network namespace of this test: nothing is sent to an outside address.
 #![cfg(target_os = "linux")]
 use std::{
     path::Path,
@@ -18,7 +18,8 @@ fn devices() -> impl Iterator<Item = &'static str> {
     DEVICES.into_iter().filter(|device| *device != "left servos")
 }
 
-/// The program with these arguments in a namespace without any network; `None`, said aloud, where none may be made.
+/// The program with these arguments in a namespace without any network; `None`, with a message, if no namespace can be
+/// created.
 fn alone(arguments: &[&str]) -> Option<Output> {
     let inside = |program: &str, arguments: &[&str], folder: &std::path::Path| {
         let mut command = Command::new("unshare");
@@ -68,10 +69,10 @@ fn a_run_names_the_first_device_and_ends_with_its_cause() {
     }
 }
 
-/// Where nothing is, for this device of the rig; `None` for a name that is not in the list above.
+/// Changes this device of the rig to an address without a device; `None` for a name outside the list above.
 fn take_away(file: &mut RigFile, device: &str, folder: &Path) -> Option<()> {
     let nowhere = folder.join("ttyACM-nothing-here").display().to_string();
-    // Bound and closed again: nobody listens there.
+    // Bound and closed again, so that nothing listens there.
     let closed = || std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let (side, part) = device.split_once(' ').unwrap_or(("", device));
     match part {
@@ -87,7 +88,7 @@ fn take_away(file: &mut RigFile, device: &str, folder: &Path) -> Option<()> {
     Some(())
 }
 
-/// All others are there, on their wires.
+/// All other devices are present, on their interfaces.
 #[test]
 #[ignore = "opens a rig of ten devices ten times: `./dev walk` runs it"]
 fn the_one_device_that_is_missing_is_the_one_that_is_named() {

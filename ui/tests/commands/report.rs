@@ -1,4 +1,4 @@
-//! The page of recorded sessions, against the tables of the same.
+//! The page of recorded sessions, compared with their tables.
 
 use serde_json::Value;
 
@@ -9,7 +9,7 @@ fn done(arguments: &[&str]) {
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Largest and mean length of a vector in an exported table.
+/// Maximum and mean magnitude of a vector in an exported table.
 fn peak_and_mean(table: &str, columns: [&str; 3]) -> [f64; 2] {
     let text = std::fs::read_to_string(table).unwrap();
     let mut lines = text.lines();
@@ -46,7 +46,7 @@ fn the_figures_are_those_of_the_tables_and_the_page_compares_both_sessions() {
         close(&arm["forces"][number]["mean_n"], mean_n);
     }
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    for expected in ["first.mcap", "second.mcap", "Comparison", "What happened", "closed properly", "<svg"] {
+    for expected in ["first.mcap", "second.mcap", "Comparison", "<h2>Events</h2>", "closed properly", "<svg"] {
         assert!(page.contains(expected), "{expected} is not on the page");
     }
     assert!(!page.contains("NaN") && !page.contains("<script"));

@@ -1,4 +1,4 @@
-//! Training tasks, recorded: what the run counted is counted again from its session.
+//! Training tasks, recorded: the counts of the run are computed again from its session.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::{
     export::done,
 };
 
-/// The scene with one ring, which two simulated hands carry over and back in some twenty seconds.
+/// The scene with one ring, which two simulated hands carry over and back in about twenty seconds.
 fn scene(folder: &Path) -> String {
     let text = include_str!("../../../config/scenes/rings.toml");
     let one = text.replace("[objects]", "[objects]\nrings = [{ peg = 1 }]");
@@ -29,7 +29,7 @@ fn record(scene: &str, seconds: &str, path: &str) -> Value {
     json(&[&run[..], &["--json"]].concat())["score"].take()
 }
 
-/// Every measure of the run in the score of its session, bit for bit.
+/// Checks that every measure of the run equals the score of its session, bit by bit.
 fn same(run: &Value, session: &Value) {
     let run = run.as_object().unwrap();
     assert!(run.len() > 50, "{run:?}");
@@ -56,7 +56,7 @@ fn the_score_of_a_session_is_that_of_its_run() {
     let scored = json(&["score", &whole, "--json"]);
     assert_eq!(scored["task"], "Rings on pegs");
     same(&run, &scored);
-    // Rings are no input of the loop.
+    // Rings are not an input of the loop.
     assert_eq!(json(&["replay", &whole, "--json"])["differs"], Value::Null);
     done(&["export", &whole, "--out", &shared, "--anonymous"]);
     same(&run, &json(&["score", &shared, "--json"]));
@@ -77,7 +77,7 @@ fn the_score_of_a_session_is_that_of_its_run() {
     let figures = json(&["report", &whole, "--out", &at("pages"), "--json"]);
     assert_eq!(figures["sessions"][0]["happenings"]["ring_transferred"], 2, "{figures}");
     let page = std::fs::read_to_string(folder.path().join("pages/report.html")).unwrap();
-    for words in ["What happened to the objects", "ring transferred", "ring 1 passed to the right instrument"] {
+    for words in ["Events of the objects", "ring transferred", "ring 1 passed to the right instrument"] {
         assert!(page.contains(words), "{words}");
     }
     let reader = Reader::open(Path::new(&whole)).unwrap();

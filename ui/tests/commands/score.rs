@@ -43,7 +43,7 @@ fn sessions_are_scored_and_become_a_table_of_trials() {
     assert!(nima(&["study", "trials", &out]).status.success(), "the table is one of trials");
 
     assert!(refused(&["score", &at("absent.mcap")]).contains("absent.mcap"));
-    assert!(refused(&["score", &sessions[0], &sessions[1], "--from", "1"]).contains("one session"));
+    assert!(refused(&["score", &sessions[0], &sessions[1], "--from", "1"]).contains("a single session"));
     std::fs::write(at("task.toml"), "name = 'x'\nkind = 'palpation'\ntime_limit_s = -1.0").unwrap();
     assert!(refused(&["score", &sessions[0], "--task", &at("task.toml")]).contains("time_limit_s"));
     let idle = at("idle.mcap");

@@ -1,4 +1,4 @@
-//! `nima sessions`: the list, and that nothing but a session that rests is ever deleted.
+//! `nima sessions`: the list, and that only sessions that are not being recorded are ever deleted.
 use std::{path::Path, process::Command, process::Output};
 
 use nima_recording::session::Writer;
@@ -37,7 +37,7 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
     let part = at("part.mcap").display().to_string();
     done(data, &["export", &whole, "--out", &part, "--from", "0.5", "--to", "1.5"]);
     std::fs::write(at("empty.mcap"), []).unwrap();
-    // As a process that records leaves it when it is killed: not finished.
+    // As left by a process that is killed while recording: not finished.
     let mut killed = Writer::create(&at("killed.mcap"), "a program").unwrap();
     killed.flush().unwrap();
     let outside = data.join("mine.mcap");
@@ -71,8 +71,8 @@ fn sessions_are_listed_kept_and_deleted_and_nothing_else_is() {
     assert!(done(data, &["sessions"]).contains("a.mcap: closed") && at("a.mcap.kept").exists());
     done(data, &["sessions", "--unkeep", "a"]);
     for name in ["../mine", "../mine.mcap", "mine", "link", "link.mcap", "/etc/passwd", "", ".", "a.mcap.kept", "A"] {
-        refused(data, &["sessions", "--delete", name], "there is no session");
-        refused(data, &["sessions", "--keep", name], "there is no session");
+        refused(data, &["sessions", "--delete", name], "not found in");
+        refused(data, &["sessions", "--keep", name], "not found in");
     }
     refused(data, &["sessions", "--delete", "a", "--keep", "b"], "cannot be used with");
     for name in ["a", "killed.mcap", "empty"] {

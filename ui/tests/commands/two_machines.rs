@@ -1,4 +1,4 @@
-//! Two machines, played by two folders of one: paired by their codes, the handle at one, the arm at the other.
+//! Two machines, simulated by two folders: paired by their codes, the handle at one, the arm at the other.
 #![cfg(target_os = "linux")]
 use std::{
     io::{BufRead as _, BufReader, Write as _},
@@ -41,7 +41,7 @@ fn code(lines: &mut impl Iterator<Item = std::io::Result<String>>) -> String {
     line.unwrap().rsplit(": ").next().unwrap().to_owned()
 }
 
-/// Pairs the machines at this address; `enter` makes of the code that is shown what is entered at the console's.
+/// Pairs the machines at this address; `enter` converts the displayed code to the one entered at the console's machine.
 fn pair(follower: &Path, console: &Path, address: &str, enter: fn(&str) -> String) -> [Output; 2] {
     let mut there = at(follower, &["pair", "--offer", "--listen", address, "--wait", "20"]);
     let mut here = at(console, &["pair", address, "--wait", "20"]);
@@ -88,7 +88,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
         let there = there.wait_with_output().unwrap();
         let json: Value = serde_json::from_slice(&here.stdout).unwrap_or_default();
         println!("{json:#}\n{}\n{}", told(&here), told(&there));
-        // A machine that stood still for 0.1 s stops them both.
+        // A machine that stood still for 0.1 s stops both.
         if json["final_state"] != "engaged" || json["link"]["open"] != true {
             too_busy();
         }
@@ -98,7 +98,7 @@ fn the_handle_is_at_one_machine_and_the_arm_at_the_other() {
             too_busy();
         }
         assert_eq!(json["link"]["dropped"], 0);
-        // The other machine was left by this one: it stopped, and says why.
+        // The other machine lost this one: it stopped, and reports the cause.
         assert!(!there.status.success());
         assert!(told(&there).contains("the other machine was closed") || told(&there).contains("over the link"));
     });

@@ -1,4 +1,4 @@
-//! A user study by commands: from the file to the report, blind until it is opened, through kills and stops.
+//! A user study by commands: from the file to the report, blind until unblinding, with kills and stops in between.
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::every_command::{json, nima};
 
-/// Words and numbers that stand nowhere else, in as many ways as a program could write them.
+/// Words and numbers that occur nowhere else, in all spellings that a program could write.
 const SECRET: [&str; 9] =
     ["zebra", "wildebeest", "anchored", "no_force", "no force", "137.5", "0.1375", "0.8125", "rendered_n"];
 
@@ -23,7 +23,7 @@ fn file(folder: &Path, head: &str, seconds: f64, conditions: &str) -> String {
     path.display().to_string()
 }
 
-/// Runs a command that must succeed; gives all that it printed.
+/// Runs a command that must succeed; returns its output.
 fn told(arguments: &[&str]) -> String {
     let output = nima(arguments);
     let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
@@ -83,7 +83,7 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
 
     let opened = told(&["user-study", "unblind", study, "--name", "A. Person", "--reason", "end"]);
     assert_eq!(secrets_in(&opened), ["zebra", "wildebeest"]);
-    assert!(opened.contains("not everybody has finished"), "{opened}");
+    assert!(opened.contains("not all participants have finished"), "{opened}");
     told(&["study-report", study]);
     assert_eq!(secrets_in(&everything(&place)), SECRET, "the control: now they are there");
     assert_eq!((sessions(".mcap"), sessions(".mcap.sealed")), (2, 0));
@@ -102,7 +102,7 @@ fn a_blind_study_tells_its_conditions_nowhere_until_it_is_opened() {
     assert!(refused(&["user-study", "unblind", study, "--name", "B", "--reason", "x"]).contains("A. Person"));
 }
 
-/// Starts the next trial of P01 and ends it by a signal once it has begun; `false` if it was over before.
+/// Starts the next trial of P01 and ends it by a signal after its start; `false` if it was over before.
 fn ended_by(signal: i32, study: &Path) -> bool {
     let journal = study.join("journal.jsonl");
     let began = |journal: &PathBuf| fs::read_to_string(journal).unwrap().matches("trial_began").count();
@@ -116,8 +116,8 @@ fn ended_by(signal: i32, study: &Path) -> bool {
     while began(&journal) == before && child.try_wait().unwrap().is_none() {
         thread::sleep(Duration::from_millis(1));
     }
-    // The program catches signals before it begins the trial.
-    // SAFETY: the child is ours and has not been waited for successfully, so its number is not another's.
+    // The program catches signals before it starts the trial. SAFETY: the child is ours and has not been waited for
+    // successfully, so its number is not another's.
     #[expect(unsafe_code, reason = "a signal to a child")]
     unsafe {
         libc::kill(libc::pid_t::try_from(child.id()).unwrap(), signal);
@@ -176,7 +176,7 @@ fn twelve_trials_with_a_killed_program_and_a_stop_lose_nothing_but_these_attempt
     assert!(refused(&["user-study", "next", study, "--participant", "P01", "--virtual"]).contains("all is done"));
 }
 
-/// A whole study by simulated people; gives p after Holm of the primary measure, and the page.
+/// A whole study with simulated people; returns p after Holm of the primary measure, and the page.
 fn simulated(conditions: &str) -> (f64, String) {
     let folder = tempfile::tempdir().unwrap();
     let rest = "[questionnaires]\nafter_condition = ['nasa_tlx_weighted']\nat_end = ['sus', 'free_text']";
@@ -211,7 +211,7 @@ fn a_simulated_study_finds_a_difference_that_is_there_and_none_that_is_not() {
     assert!(page.contains("Simulated:") && page.contains("<svg") && page.contains("With (n = 10)"), "{page}");
     assert!(page.contains("Unblinded by A") && page.contains("matched, gain 1") && page.contains("20 ms"), "{page}");
     assert!(!page.contains("<script") && !page.contains("src="), "nothing is loaded from elsewhere");
-    // Less than a tick apart: the same to the hand.
+    // Less than a tick apart: the same for the hand.
     let same = "[[conditions]]\nname = 'Same'\nmode = 'matched'\ndelay_ms = 20.1\n";
     let (p, _) = simulated(&format!("{with}{same}"));
     assert!(p > 0.05, "{p}");
@@ -228,12 +228,12 @@ fn the_result_of_a_trial_is_told_as_the_study_has_it() {
         told(&["user-study", "new", &file, "--out", study]);
         told(&["user-study", "next", study, "--participant", "P01", "--virtual"])
     };
-    // Nobody meets a criterion in a trial that its time ends, so nothing fades.
+    // A trial that ends by its time limit meets no criterion, so nothing fades.
     for shows in ["always", "fades"] {
-        assert!(told_under(shows).contains("the time is over"), "{shows}");
+        assert!(told_under(shows).contains("the time limit is reached"), "{shows}");
     }
     let without = told_under("never");
-    assert!(without.contains("without its result") && !without.contains("time is over"), "{without}");
+    assert!(without.contains("result hidden") && !without.contains("time limit is reached"), "{without}");
 }
 
 #[test]
@@ -259,7 +259,7 @@ fn bad_studies_and_steps_are_one_line() {
     assert!(refused(&["user-study", "unblind", study, "--name", " ", "--reason", "x"]).contains("needs a name"));
     let empty = told(&["study-report", study]);
     assert!(
-        fs::read_to_string(place.join("report/report.html")).unwrap().contains("nothing to compare yet"),
+        fs::read_to_string(place.join("report/report.html")).unwrap().contains("Nothing to compare yet"),
         "{empty}"
     );
 }

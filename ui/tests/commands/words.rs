@@ -1,16 +1,16 @@
-//! The console's words live in `ui/src/console/text/`, those of an extra in its folder: a translation has few places to work in. This test reads
-//! the sources and counts the literals with words everywhere else.
+//! The console's texts are in `ui/src/console/text/`, and those of an extra in its folder, so that a translation has few
+//! places to work in. This test reads the sources and counts the literals with text everywhere else.
 
 use std::path::{Path, PathBuf};
 
 use crate::languages::pairs;
 
-/// Literals with words that are none of the screen's, by file: errors told on the terminal (`app/pace.rs`, `screenshot.rs`), a driver's
-/// name (`canvas/surface.rs`) and shader source (`scene3d/gl.rs`). A file that is not named here has none.
+/// Literals with text that are not part of the screen, by file: errors on the terminal (`app/pace.rs`, `screenshot.rs`), a
+/// driver's name (`canvas/surface.rs`) and shader source (`scene3d/gl.rs`). Any other file has none.
 const LEFT: [(&str, usize); 4] =
     [("app/pace.rs", 1), ("canvas/surface.rs", 1), ("scene3d/gl.rs", 2), ("screenshot.rs", 1)];
 
-/// What each extra has under this name: a file or a folder.
+/// The file or folder of this name in each extra.
 pub(crate) fn of_extras(name: &str) -> Vec<PathBuf> {
     let extras = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/extras");
     let folders = std::fs::read_dir(extras).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
@@ -42,7 +42,7 @@ pub(crate) fn literals(source: &str) -> Vec<String> {
     let mut literals = Vec::new();
     for line in joined(source) {
         let mut parts = line.split('"');
-        // Code and literals take turns.
+        // Code and literals alternate.
         while let (Some(code), Some(literal)) = (parts.next(), parts.next()) {
             if code.contains("//") {
                 break;
@@ -53,7 +53,7 @@ pub(crate) fn literals(source: &str) -> Vec<String> {
     literals
 }
 
-/// Lines with continued literals in one, without attributes, comment lines, escaped quotes and quote characters.
+/// Lines with continued literals joined, without attributes, comment lines, escaped quotes and quote characters.
 fn joined(source: &str) -> Vec<String> {
     let plain = source.replace("'\"'", "").replace("\\\"", "");
     let mut lines: Vec<String> = Vec::new();
@@ -71,7 +71,7 @@ fn joined(source: &str) -> Vec<String> {
     lines
 }
 
-/// Two words, or one that begins a sentence: what stands between braces is no word.
+/// Whether it has two words, or one that starts a sentence; the content of braces does not count.
 pub(crate) fn has_words(literal: &str) -> bool {
     let mut depth = 0_i32;
     let plain: String = literal
@@ -122,7 +122,7 @@ fn every_sentence_is_in_the_text_modules() {
     );
 }
 
-/// Name and words, English and German, of every constant in `text/`.
+/// Name and texts, English and German, of every constant in `text/`.
 fn constants() -> Vec<(String, [String; 2])> {
     let mut files = Vec::new();
     sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src/console/text"), &mut files);
@@ -141,7 +141,7 @@ fn constants() -> Vec<(String, [String; 2])> {
     constants
 }
 
-/// `ALARM_STALE_CAUSE`, not `THE_DATA_ARE`: a name survives when its sentence is written anew.
+/// `ALARM_STALE_CAUSE`, not `THE_DATA_ARE`: a name must survive a new wording.
 #[test]
 fn a_constant_is_named_by_its_role() {
     let first_words = |name: &str, words: &str| {

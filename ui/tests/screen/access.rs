@@ -1,5 +1,5 @@
-//! The window for who does not see it or has no mouse: everything that is operated has a name, the keyboard goes through it in the order in
-//! which it is read, and plots tell in words what they show.
+//! The window for users without sight or mouse: every control has a name, the keyboard visits controls in reading order, and
+//! plots have a text.
 
 use egui::{Key, Modifiers, Rect, accesskit::Role as Kind};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -27,7 +27,7 @@ fn begin(scene: &str, folder: &std::path::Path) -> Console {
     console
 }
 
-/// Nodes that take an action or the focus, and have no name; a scroll bar is known by what it scrolls.
+/// Nodes with an action or focus and without a name; a scroll bar is identified by its content.
 fn nameless(console: &Console) -> Vec<String> {
     use egui::accesskit::Action::{Click, Focus, Increment, SetValue};
     let is_operated =
@@ -48,12 +48,12 @@ fn nameless(console: &Console) -> Vec<String> {
             wrong.push(format!("{:?} at {:?}", node.role(), node.raw_bounds()));
         }
     }
-    // A trial has the fewest: what gives it up, what engages or stops.
+    // A trial has the fewest: abort, engage and stop.
     assert!(count >= 3, "only {count} nodes can be operated");
     wrong
 }
 
-/// What has no name is told with where it is.
+/// Controls without a name are reported with their place.
 fn look(console: &mut Console, place: &str, all: &mut Vec<String>) {
     console.run_steps(3);
     all.extend(nameless(console).into_iter().map(|node| format!("{place}: {node}")));
@@ -112,7 +112,7 @@ fn everything_on_every_page_and_in_every_list_has_a_name() {
     console.run_steps(2);
     studies::open(&mut console);
     look(&mut console, "study", &mut all);
-    studies::begin(&mut console, "Begin the trial");
+    studies::begin(&mut console, "Start the trial");
     look(&mut console, "trial", &mut all);
     wait(&mut console, "its end", |console| !console.state().in_trial());
     told(&all);
@@ -145,13 +145,13 @@ fn everything_in_every_wizard_and_in_the_past_has_a_name() {
     told(&all);
 }
 
-/// Names and places of the controls, as Tab goes through them from the first one on.
+/// Names and positions of the controls in the order of the Tab key from the first one.
 fn stops(console: &mut Console) -> Vec<(String, Rect)> {
     let focused = |console: &Console| {
         let node = console.query_all_by(|node| node.is_focused() && node.role() != Kind::Window).next()?;
         Some((node.accesskit_node().label().unwrap_or_default(), node.rect()))
     };
-    // Ends what had the focus before.
+    // Removes the previous focus.
     if let Some(id) = console.ctx.memory(egui::Memory::focused) {
         console.ctx.memory_mut(|memory| memory.surrender_focus(id));
     }
@@ -168,7 +168,7 @@ fn stops(console: &mut Console) -> Vec<(String, Rect)> {
     stops
 }
 
-/// Whether `next` may follow: below, at the right in the same row, or at the head of the next column.
+/// Whether `next` may follow: below, at the right in the same row, or at the top of the next column.
 fn follows(last: Rect, next: Rect) -> bool {
     const SLACK: f32 = 2.0;
     let above = next.bottom() <= last.top() + SLACK;
@@ -178,7 +178,7 @@ fn follows(last: Rect, next: Rect) -> bool {
     !(above && !at_the_right || same_row && at_the_left)
 }
 
-/// Pairs of neighbours in the order of the keyboard that are read in another order; only places within `room`.
+/// Neighbours in keyboard order that differ from reading order; only within `room`.
 fn disorder(stops: &[(String, Rect)], room: Rect) -> Vec<String> {
     let inside: Vec<&(String, Rect)> = stops.iter().filter(|(_, place)| room.contains(place.center())).collect();
     let wrong = inside.windows(2).filter(|pair| !follows(pair[0].1, pair[1].1));
@@ -189,7 +189,7 @@ fn disorder(stops: &[(String, Rect)], room: Rect) -> Vec<String> {
 fn the_keyboard_goes_through_the_top_bar_and_every_panel_as_they_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = begin("bimanual", folder.path());
-    // So that the step beside the stop can be pressed.
+    // So that the step next to the stop can be pressed.
     press(&mut console, "Stop");
     until(&mut console, "stopped", |tick| tick.state == LoopState::Stopped);
     console.run_steps(30);
@@ -200,7 +200,7 @@ fn the_keyboard_goes_through_the_top_bar_and_every_panel_as_they_are_read() {
     let mut wrong = Vec::new();
     let mut count = 0;
     for panel in Panel::ALL {
-        // Alone, so that all below the bar is of this panel.
+        // Alone, so that everything below the bar belongs to this panel.
         let closed = Panel::ALL.into_iter().filter(|other| *other != panel).collect();
         console.state_mut().settings_mut().layout = Layout { closed, ..Layout::default() };
         console.run_steps(4);

@@ -1,4 +1,4 @@
-//! Alarms in the window: pinned, folded, acknowledged, listed; and the stop above whatever is open.
+//! Alarms in the window: pinned, folded, acknowledged, listed; and the stop button above all open windows.
 
 use eframe::App as _;
 use egui::{Key, accesskit::Role, pos2, vec2};
@@ -20,7 +20,7 @@ fn reads(harness: &Harness<'_, ConsoleApp>, words: &str) -> usize {
     harness.query_all_by_label_contains(words).count()
 }
 
-/// A console whose loop has died under it.
+/// A console whose loop has ended unexpectedly.
 fn of_a_dead_loop() -> Harness<'static, ConsoleApp> {
     let mut harness = console_of("free_motion", SIZE, |app| app);
     until(&mut harness, "any tick", |_| true);
@@ -80,7 +80,7 @@ fn click(harness: &mut Harness<'_, ConsoleApp>, at: egui::Pos2) {
     harness.run_steps(3);
 }
 
-/// What may be open over the console.
+/// Windows that may be open over the console.
 const OVERLAYS: [&str; 6] = ["tour", "glossary", "glossary dragged to the stop", "view menu", "alarms", "hint"];
 
 fn open(harness: &mut Harness<'_, ConsoleApp>, overlay: &str) {
@@ -97,7 +97,7 @@ fn open(harness: &mut Harness<'_, ConsoleApp>, overlay: &str) {
     }
     harness.run_steps(3);
     if overlay == "glossary dragged to the stop" {
-        // Its title bar lies above its first word.
+        // Its title bar is above its first word.
         let word =
             |harness: &Harness<'_, ConsoleApp>| harness.get_by_role_and_label(Role::Label, "Keys").rect().left_top();
         let before = word(harness);
@@ -146,7 +146,7 @@ fn the_stop_is_hit_in_every_wizard() {
     }
 }
 
-/// Stops by this key, or by a click where the button is seen; it stays stopped.
+/// Stops by this key, or by a click on the visible button; the loop stays stopped.
 fn stop_by(harness: &mut Harness<'_, ConsoleApp>, key: Option<Key>, over: &str) {
     let stop = harness.get_by_role_and_label(Role::Button, "Stop").rect();
     assert!(stop.width() >= 48.0 && stop.height() >= 48.0, "{over}: {stop:?}");
@@ -168,7 +168,7 @@ fn an_accepted_stop_is_no_alarm() {
     harness.key_press(Key::F5);
     harness.run_steps(3);
     assert_eq!(reads(&harness, STUCK), 0);
-    // A loop that got no processor for half a second is told as silent, and rightly.
+    // A loop without processor time for half a second is correctly reported as silent.
     assert!(reads(&harness, "Alarm: ") <= reads(&harness, SILENT));
 }
 
@@ -199,7 +199,7 @@ fn a_device_that_is_missing_is_pinned_with_its_cause_and_its_cure() {
     assert_eq!(reads(&harness, " is missing: "), 1, "the first is pinned, the others are folded under it");
     assert_eq!(reads(&harness, "Warning: The "), 1);
     harness.key_press(Key::F5);
-    read(&mut harness, "The right arm is missing: nobody listens at 127.0.0.1:52800");
+    read(&mut harness, "The right arm is missing: no response from 127.0.0.1:52800");
     read(&mut harness, "Correct the port number in the rig file");
 }
 

@@ -15,22 +15,22 @@ use nima_machine::messages::Tick;
 use nima_simulation::{Plan, start_watched};
 use nima_tests::plan;
 
-/// Far longer than anything takes, also on a busy machine.
+/// Far longer than any step takes, even on a busy machine.
 pub(crate) const TIMEOUT: Duration = Duration::from_mins(3);
-/// How much faster than real time a simulated person works in a wizard.
+/// Speed of a simulated person in a wizard, as a multiple of real time.
 pub(crate) const WIZARD_SPEED: f64 = 4.0;
 
 /// A window with the console.
 pub(crate) type Console = Harness<'static, ConsoleApp>;
 
-/// The settings that are kept in this folder, for somebody who has seen the tour.
+/// The settings in this folder, for a user who has seen the tour.
 pub(crate) fn toured(folder: &Path) -> Kept {
     let mut kept = Kept::open(folder);
     kept.now.toured = true;
     kept
 }
 
-/// The console on the simulated rig in this scene, made ready by `prepare`; both hands of a scene that has two.
+/// The console on the simulated rig in this scene, prepared by `prepare`; with both hands if the scene has two.
 pub(crate) fn console_of(
     scene: &str,
     size: [f32; 2],
@@ -39,12 +39,12 @@ pub(crate) fn console_of(
     shown(&plan(scene), size, prepare)
 }
 
-/// The console on a loop that is started by this plan, made ready by `prepare`. In simulated time: a busy machine faults no loop.
+/// The console on a loop of this plan, prepared by `prepare`. In simulated time, so that a busy machine causes no fault.
 pub(crate) fn shown(plan: &Plan, size: [f32; 2], prepare: impl FnOnce(ConsoleApp) -> ConsoleApp + 'static) -> Console {
     shown_at(1.0, plan, size, prepare)
 }
 
-/// The same with a loop that is `speed` times as fast, for what takes minutes.
+/// Like [`shown`], with a loop of this speed, for tests of several minutes.
 pub(crate) fn shown_at(
     speed: f64,
     plan: &Plan,
@@ -59,10 +59,11 @@ pub(crate) fn shown_at(
     })
 }
 
-/// As a window that draws fifty times a second: drawing all the time would only slow down what it waits for.
+/// Draws fifty times per second: continuous drawing would only slow down the loop.
 const FRAME: Duration = Duration::from_millis(20);
 
-/// Steps the window until it is as wanted, for so long at most; whether it came to that. The window never settles, so `run` is of no use.
+/// Steps the window until the condition holds, up to this time; returns whether it held. The window never settles, so `run`
+/// cannot be used.
 pub(crate) fn comes<'a, A>(
     window: &mut Harness<'a, A>,
     within: Duration,
@@ -79,39 +80,39 @@ pub(crate) fn comes<'a, A>(
     true
 }
 
-/// Steps the window until it is as wanted.
+/// Steps the window until the condition holds.
 pub(crate) fn wait<A>(window: &mut Harness<'_, A>, what: &str, wanted: impl Fn(&Harness<'_, A>) -> bool) {
     assert!(comes(window, TIMEOUT, wanted), "never: {what}; there is: {:?}", texts(window));
 }
 
-/// Steps the window until the newest tick on the screen is as wanted.
+/// Steps the window until the newest tick on the screen fulfils the condition.
 pub(crate) fn until(console: &mut Harness<'_, ConsoleApp>, what: &str, wanted: impl Fn(&Tick) -> bool) {
     wait(console, what, |console| console.state().tick().is_some_and(&wanted));
 }
 
-/// Steps the window until these words are on the screen.
+/// Steps the window until this text is on the screen.
 pub(crate) fn read<A>(window: &mut Harness<'_, A>, words: &str) {
     wait(window, words, |window| shows(window, words));
 }
 
-/// Whether these words are on the screen.
+/// Whether this text is on the screen.
 pub(crate) fn shows<A>(window: &Harness<'_, A>, words: &str) -> bool {
     window.query_all_by_label_contains(words).next().is_some()
 }
 
-/// All that can be read, for the words of a failure.
+/// All visible texts, for failure messages.
 pub(crate) fn texts<A>(window: &Harness<'_, A>) -> Vec<String> {
     let words = |node: Node<'_>| node.accesskit_node().value().or_else(|| node.accesskit_node().label());
     window.query_all_by_label_contains("").filter_map(words).collect()
 }
 
-/// Whether there is this button, and it can be pressed.
+/// Whether this button exists and can be pressed.
 pub(crate) fn can_press<A>(window: &Harness<'_, A>, label: &str) -> bool {
     let button = window.query_by_role_and_label(Role::Button, label);
     button.is_some_and(|button| !button.accesskit_node().is_disabled())
 }
 
-/// Clicks a button, which must first become ready, where it is.
+/// Clicks a button at its position, after it is enabled.
 pub(crate) fn press<A>(window: &mut Harness<'_, A>, label: &str) {
     window.step();
     wait(window, label, |window| can_press(window, label));
@@ -119,7 +120,7 @@ pub(crate) fn press<A>(window: &mut Harness<'_, A>, label: &str) {
     window.run_steps(2);
 }
 
-/// Presses a button, which must first become ready, by its name: it may be scrolled out of sight.
+/// Presses a button by its name, after it is enabled: it may be scrolled out of sight.
 pub(crate) fn pick<A>(window: &mut Harness<'_, A>, label: &str) {
     wait(window, label, |window| can_press(window, label));
     window.get_by_role_and_label(Role::Button, label).click_accesskit();
@@ -141,7 +142,7 @@ pub(crate) fn write_into<A>(window: &mut Harness<'_, A>, label: &str, text: &str
     window.run_steps(2);
 }
 
-/// Types into a field in place of what stands there.
+/// Replaces the content of a field by typing.
 pub(crate) fn write_over<A>(window: &mut Harness<'_, A>, label: &str, text: &str) {
     window.get_by_role_and_label(Role::TextInput, label).focus();
     window.step();

@@ -1,4 +1,4 @@
-//! Blindness of user studies over the screen: no text, hover text, title or file tells a condition before the unblinding.
+//! Blindness of user studies on the screen: no text, hover text, title or file reveals a condition before unblinding.
 
 use std::{
     collections::BTreeSet,
@@ -17,11 +17,11 @@ use crate::{
     studies::{console, make},
 };
 
-/// Words and numbers that stand nowhere else, in as many ways as a screen could write them.
+/// Words and numbers that occur nowhere else, in all spellings that a screen could show.
 const SECRET: [&str; 10] =
     ["zebra", "wildebeest", "anchored", "no_force", "137.5", "0.1375", "138 ms", "0.8125", "0.81", "rendered_n"];
 
-/// A window of which everything is remembered that could be read in it.
+/// A window that records everything that could be read in it.
 struct Reader {
     window: Console,
     seen: BTreeSet<String>,
@@ -69,7 +69,7 @@ impl Reader {
         self.step();
     }
 
-    /// A trial, with a look into every corner that keys and the pointer reach.
+    /// A trial that visits every control that keys and pointer reach.
     fn trial(&mut self, button: &str) {
         self.pick(button);
         self.until("a trial", |window| window.state().in_trial());
@@ -90,7 +90,7 @@ impl Reader {
             self.step();
             self.step();
         }
-        // All that the palette offers, and then it is closed again.
+        // Everything that the palette offers; then it is closed again.
         for _ in 0..2 {
             self.window.key_press_modifiers(egui::Modifiers::COMMAND, P);
             self.step();
@@ -126,7 +126,7 @@ fn secrets_in(text: &str) -> Vec<&'static str> {
     found_in(text, &SECRET)
 }
 
-/// Sealed sessions are random bytes: in the 20 MB of them any four in a row are found in one run of two hundred.
+/// Sealed sessions are random bytes: in 20 MB of them, any given four bytes in a row occur in one of two hundred runs.
 fn secrets_in_files(files: &str) -> Vec<&'static str> {
     secrets_in(files).into_iter().filter(|secret| secret.len() > 4).collect()
 }
@@ -139,21 +139,21 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     let place = make(folder.path(), "trials = 1\nrecord = true\nreference = 'Wildebeest'", 6.0, rest);
     let mut window = console(folder.path(), Options::default());
     until(&mut window, "any tick", |_| true);
-    // What ran before has a mode and a gain of its own on the screen.
+    // The previous loop has its own mode and gain on the screen.
     window.key_press(Key::F8);
     window.run_steps(3);
     let mut reader = Reader { window, seen: BTreeSet::new() };
     reader.pick("Open Touching");
     reader.pick("a simulated hand");
-    reader.trial("Begin the practice trial");
+    reader.trial("Start the practice trial");
     reader.pick("the mouse");
-    reader.trial("Begin the trial");
+    reader.trial("Start the trial");
     reader.pick("Fill in the questionnaire");
     reader.pick("1: 5");
     reader.pick("Submit");
-    reader.pick("Begin the break");
+    reader.pick("Start the break");
     reader.pick("End the break");
-    reader.trial("Begin the trial");
+    reader.trial("Start the trial");
     reader.pick("Fill in the questionnaire");
     reader.pick("1: 4");
     reader.pick("Submit");
@@ -161,15 +161,15 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     reader.read("Finished");
     reader.pick("P02");
     reader.write_into("What happened", "the light flickered");
-    reader.pick("Keep the note");
+    reader.pick("Save note");
     reader.write_into("Reason", "never came");
-    reader.pick("Leave it out");
+    reader.pick("Exclude");
     reader.pick("Write the report");
     reader.read("Written: ");
     reader.point_around();
     let seen: Vec<String> = reader.seen.iter().cloned().collect();
     let files = everything(folder.path());
-    for told in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Give up this trial"] {
+    for told in ["Trial 1 of 2, condition ", "Practice trial 1", "Touch", "Loop state: Engaged", "Abort this trial"] {
         assert!(seen.iter().any(|words| words.contains(told)), "{told} was not even seen: {seen:?}");
     }
     let found: Vec<&String> = seen.iter().filter(|words| !secrets_in(words).is_empty()).collect();
@@ -183,7 +183,7 @@ fn a_blind_study_tells_its_conditions_on_no_page_and_in_no_file_until_it_is_open
     assert!(!folder.path().join("sessions").exists(), "the console recorded nothing of its own");
 
     reader.write_into("Your name", "A. Person");
-    reader.write_into("Reason of the unblinding", "end");
+    reader.write_into("Reason for unblinding", "end");
     reader.pick("Unblind the study");
     reader.read("Unblinded by");
     let seen = reader.seen.iter().cloned().collect::<String>();

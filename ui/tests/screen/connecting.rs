@@ -1,4 +1,4 @@
-//! The devices panel on an emulated rig: which device is which, their test, and other devices for a part.
+//! The Devices panel on an emulated rig: identification of devices, their test, and other devices for a part.
 #![cfg(target_os = "linux")]
 
 use std::{path::Path, time::Duration};
@@ -27,16 +27,16 @@ use nima_tests::{
 use crate::bench::{comes, press, toured, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
-/// Far longer than emulators and devices need to start; a machine on which they do not is too busy.
+/// Far longer than emulators and devices need to start; a slower machine is too busy.
 const WITHIN: Duration = Duration::from_secs(40);
 const NIMA: &str = env!("CARGO_BIN_EXE_nima");
 
-/// A console with the devices panel in front, on the simulated rig; its data folder is `folder`.
+/// A console with the Devices panel in front, on the simulated rig; its data folder is `folder`.
 fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
     let plan = plan("peg_transfer");
     let handle = start_simulated(&plan, 1.0).unwrap();
-    // The loop of an emulated rig runs in real time, as its devices do.
+    // The loop of an emulated rig runs in real time, like its devices.
     let mut harness = Harness::builder().with_size(SIZE).with_step_dt(1.0 / 30.0).build_eframe(move |cc| {
         let mut kept = toured(&folder);
         kept.now.layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
@@ -47,11 +47,11 @@ fn console(folder: &Path) -> Harness<'static, ConsoleApp> {
     harness
 }
 
-/// The emulated rig at places of its own, as a file in the user's folder, is started from the start page.
+/// The emulated rig at its own addresses, as a file in the user's folder, is started from the start page.
 fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     let mut file = rig_file(&elsewhere(folder));
     file.set("name", "Bench rig");
-    // Emulated handles know their hands, as real ones do: who wants them exchanged says so.
+    // Emulated handles report their hands, as real ones do: swapping them must be explicit.
     file.set("devices.right.handle.hand", "right");
     file.set("devices.left.handle.hand", "left");
     file.save(&folder.join("rigs/bench.toml")).unwrap();
@@ -66,7 +66,7 @@ fn on_emulated_rig(folder: &Path) -> (Harness<'static, ConsoleApp>, RigFile) {
     (harness, file)
 }
 
-/// What the rows say of their devices.
+/// Texts of the device rows.
 fn told(harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
     let rows = harness.query_all_by_label_contains("per second").chain(harness.query_all_by_label_contains("connect"));
     rows.filter_map(|row| row.accesskit_node().value()).collect()
@@ -102,7 +102,7 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
         let was = file.rig().unwrap().devices.unwrap();
         assert_eq!(serials(harness.state().rig()), [Some(4711), Some(4712)]);
         press(&mut harness, "Choose right handle");
-        let other = harness.get_by_label_contains("serial number 4712, firmware 3.2: now the left handle");
+        let other = harness.get_by_label_contains("serial number 4712, firmware 3.2: currently the left handle");
         other.click();
         harness.step();
         wait(&mut harness, "exchanged handles", |harness| serials(harness.state().rig()) == [Some(4712), Some(4711)]);
@@ -112,7 +112,7 @@ fn another_handle_is_chosen_by_its_serial_number_and_sensors_are_exchanged_by_on
         harness.run_steps(2);
         harness.get_by_label_contains("Saved in the rig file");
 
-        press(&mut harness, "Exchange sensors");
+        press(&mut harness, "Swap sensors");
         let path = folder.path().join("rigs/bench.toml");
         wait(&mut harness, "exchanged sensors", |harness| {
             let of = |devices: &Settings, side| devices.arm(side).map(|set| set.sensor.clone());
@@ -138,7 +138,7 @@ fn every_device_is_tested_and_its_figures_are_told() {
         let folder = tempfile::tempdir().unwrap();
         let (mut harness, _) = on_emulated_rig(folder.path());
         press(&mut harness, "Test all");
-        assert!(harness.query_all_by_label("testing: let it rest").next().is_some());
+        assert!(harness.query_all_by_label("testing: keep it at rest").next().is_some());
         wait(&mut harness, "results", |harness| harness.query_all_by_label_contains("Tested: ").count() == 11);
         // Two sensors with an accelerometer, three with forces.
         assert_eq!(harness.query_all_by_label("Up").count(), 2);
@@ -150,7 +150,7 @@ fn every_device_is_tested_and_its_figures_are_told() {
         press(&mut harness, "Test right arm");
         wait(&mut harness, "the result of one", |harness| {
             harness.query_all_by_label_contains("Tested: ").count() == 11
-                && harness.query_all_by_label("testing: let it rest").next().is_none()
+                && harness.query_all_by_label("testing: keep it at rest").next().is_none()
         });
     });
 }
@@ -161,7 +161,7 @@ fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so(
     let folder = tempfile::tempdir().unwrap();
     let harness = console(folder.path());
     harness.get_by_label("This rig is simulated: it has no devices");
-    assert!(harness.query_by_label_contains("Exchange").is_none());
+    assert!(harness.query_by_label_contains("Swap").is_none());
     drop(harness);
     let _alone = alone();
     judged(|| {
@@ -180,15 +180,15 @@ fn nothing_is_changed_while_the_drives_are_on_and_a_rig_without_devices_says_so(
         press(&mut harness, "Engage");
         wait(&mut harness, "engaged", |harness| state(harness) == Some(LoopState::Engaged));
         harness.run_steps(2);
-        harness.get_by_label_contains("Rest or stop first: the drives are on");
-        let button = harness.get_by_role_and_label(Role::Button, "Exchange handles");
+        harness.get_by_label_contains("Set the loop to idle or press Stop first: the drives are on");
+        let button = harness.get_by_role_and_label(Role::Button, "Swap handles");
         assert!(button.accesskit_node().is_disabled());
         press(&mut harness, "Choose left arm");
-        let other = harness.get_by_label_contains("now the right arm; the two are exchanged");
+        let other = harness.get_by_label_contains("currently the right arm; the two will be swapped");
         assert!(other.accesskit_node().is_disabled());
         press(&mut harness, "Stop");
         wait(&mut harness, "stopped", |harness| state(harness) == Some(LoopState::Stopped));
         harness.run_steps(2);
-        harness.get_by_label_contains("Release the stop first");
+        harness.get_by_label_contains("Press Release stop first");
     });
 }

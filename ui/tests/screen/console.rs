@@ -1,5 +1,5 @@
-//! The console driven by accessible names on a real running loop: what is pressed must reach the loop, and what the loop
-//! does must come back to the screen.
+//! The console driven by accessible names on a real running loop: input must reach the loop, and its effects must appear on
+//! the screen.
 
 use std::time::Duration;
 
@@ -33,7 +33,7 @@ fn console() -> Harness<'static, ConsoleApp> {
     harness
 }
 
-/// True when a tick like that comes within some seconds of loop time (a peg's turn takes less than three).
+/// True when such a tick arrives within this loop time (one peg takes less than 3 s).
 fn ever(harness: &mut Harness<'_, ConsoleApp>, seconds: f64, good: impl Fn(&Tick) -> bool) -> bool {
     let t_s = |harness: &Harness<'_, ConsoleApp>| harness.state().tick().map_or(0.0, |tick| tick.t_s);
     let from_s = t_s(harness);
@@ -195,7 +195,7 @@ fn traces_pause_while_the_loop_goes_on() {
     let mut harness = console();
     press(&mut harness, "Pause");
     assert!(ever(&mut harness, 1.0, |tick| tick.state == LoopState::Engaged));
-    press(&mut harness, "Go on");
+    press(&mut harness, "Resume");
     press(&mut harness, "Last 10 s");
     harness.get_by_role_and_label(Role::Button, "Pause");
 }
@@ -246,7 +246,7 @@ fn the_instrument_is_led_by_mouse_and_keys_and_a_stop_lets_it_go() {
     harness.step();
     let aim_m = harness.state().tick().unwrap().guide_m.unwrap();
     until(&mut harness, "where it is led", |tick| (tick.leader_m - tick.guide_m.unwrap_or_default()).norm() < 3e-3);
-    press(&mut harness, "Let go (M)");
+    press(&mut harness, "Stop driving (M)");
     until(&mut harness, "let go", |tick| tick.guide_m.is_none());
     harness.key_press(Key::M);
     until(&mut harness, "led again", |tick| tick.guide_m.is_some_and(|at_m| at_m != aim_m));

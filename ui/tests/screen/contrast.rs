@@ -1,4 +1,4 @@
-//! Contrast as it is painted: every text of every view, page and list, in both palettes, against what lies directly below it.
+//! Contrast as painted: every text of every view, page and list, in both palettes, against the colour directly below it.
 
 use egui::{Color32, Key, Modifiers, Pos2, Rect, Shape, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
@@ -28,7 +28,7 @@ fn contrast(a: Color32, b: Color32) -> f64 {
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
-/// A text as it is painted: its words, its middle, and its colours over what is below.
+/// A text as painted: its characters, its middle, and its colours over the ground.
 struct Painted {
     words: String,
     at: Pos2,
@@ -36,7 +36,7 @@ struct Painted {
     ground: Color32,
 }
 
-/// All texts of the frame, over the filled rectangles that were painted before.
+/// All texts of the frame, over the filled rectangles painted before.
 fn painted(console: &Console) -> Vec<Painted> {
     fn add(shape: &Shape, clip: Rect, grounds: &mut Vec<(Rect, Color32)>, texts: &mut Vec<Painted>) {
         match shape {
@@ -69,8 +69,8 @@ fn painted(console: &Console) -> Vec<Painted> {
     texts
 }
 
-/// What cannot be read. What cannot be operated now is greyed on purpose, and what lies on the field or on a picture has a ground of its
-/// own that is tested beside the colours.
+/// Unreadable texts. Disabled controls are greyed on purpose, and text on the field or on an image has its own ground, which
+/// is tested with the colours.
 fn faults(console: &mut Console) -> Vec<String> {
     console.run_steps(4);
     let greyed: Vec<Rect> = console

@@ -24,7 +24,7 @@ use nima_tests::plan;
 use crate::bench::{Console, console_of, press, read, shown_at, until};
 
 const SIZE: [f32; 2] = [1280.0, 720.0];
-/// How much faster than real time the loop runs at most, where a test waits for a chapter.
+/// Maximum speed of the loop, as a multiple of real time, in tests that wait for a chapter.
 const SPEED: f64 = 8.0;
 
 #[test]
@@ -61,8 +61,8 @@ fn the_demonstration_goes_on_by_itself_and_stands_while_the_loop_is_stopped() {
     until(&mut harness, "the second chapter", |tick| tick.mode == Mode::Dfr);
 }
 
-/// How long the second chapter takes on the loop's clock, and the longest time between two frames, s, where the window rests for this time
-/// after each frame.
+/// Duration of the second chapter on the loop's clock, and longest time between two frames, s, for a window that rests for
+/// this time after each frame.
 fn second_chapter_s(rest: Duration) -> [f64; 2] {
     let mut harness = shown_at(SPEED, &plan("peg_transfer"), SIZE, |app| app);
     press(&mut harness, "Demo");
@@ -139,7 +139,7 @@ fn a_fault_in_each_chapter_is_explained_and_the_chapter_restarts() {
     let (mut console, is_silent) = of_silent(SPEED);
     press(&mut console, "Demo");
     until(&mut console, "engaged", |tick| tick.state == LoopState::Engaged);
-    press(&mut console, "Hold");
+    press(&mut console, "Pause demo");
     for (chapter, mode, delay_s) in [
         ("1. What you see", Mode::Best, 0.05),
         ("2. Direct reflection", Mode::Dfr, 0.3),
@@ -201,15 +201,15 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     press(&mut harness, "Demo");
     press(&mut harness, "7. Letting go");
     until(&mut harness, "without a governor", |tick| tick.gate_settings.handle_kg == 0.0);
-    press(&mut harness, "Hold");
+    press(&mut harness, "Pause demo");
     until(&mut harness, "the handle flies to where its mechanism ends", |tick| tick.leader_m.z > 0.07);
     harness.get_by_label_contains("The handle moved");
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "nothing ends it");
     press(&mut harness, "8. The governor");
     until(&mut harness, "with the governor", |tick| tick.gate_settings == before_with_hold(before));
-    until(&mut harness, "nobody holds the handle", |tick| tick.state == LoopState::Idle);
+    until(&mut harness, "no hand holds the handle", |tick| tick.state == LoopState::Idle);
     let went = harness.get_by_label_contains("The handle moved").value().unwrap_or_default();
-    // The press at which the hand lets go is not the same in each run: 0.9 to 2.1 mm were seen.
+    // The pressing force at which the hand releases the handle differs between runs: 0.9 to 2.1 mm were observed.
     assert!(["moved 0.", "moved 1.", "moved 2."].iter().any(|few| went.contains(few)), "{went}");
     until(&mut harness, "engaged again", |tick| tick.state == LoopState::Engaged);
     harness.key_press(Key::F2);
@@ -217,7 +217,7 @@ fn the_demonstration_lets_go_with_and_without_the_governor_and_leaves_everything
     until(&mut harness, "as before", |tick| tick.gate_settings == before && tick.mode == mode);
 }
 
-/// A force that fades at standstill would leave nothing to let go.
+/// A force that fades at standstill would leave nothing to release.
 fn before_with_hold(before: ChainSettings) -> ChainSettings {
     ChainSettings { static_hold: true, ..before }
 }

@@ -1,4 +1,5 @@
-//! The technician's desk by mouse and by names: tiles are dragged, closed, opened, put back, and lie the next day where they were left.
+//! The layout of the Technician view by mouse and by names: tiles are dragged, closed, reopened and reset, and the layout is
+//! restored at the next start.
 
 use std::path::Path;
 
@@ -90,7 +91,7 @@ fn an_edge_is_dragged_and_the_default_comes_back() {
     assert!((after.left() - before.left() - 120.0).abs() < 4.0, "{before:?} {after:?}");
     assert!(layout_of(&mut harness).places.is_some());
     press(&mut harness, "View");
-    press(&mut harness, "Reset the layout");
+    press(&mut harness, "Reset layout");
     harness.run_steps(2);
     assert_eq!(layout_of(&mut harness).places, None);
     assert!((field(&harness).left() - before.left()).abs() < 1.0);
@@ -154,7 +155,7 @@ fn the_histograms_tell_how_many_ticks_are_later_than_the_deadline() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
     until(&mut harness, "a second", |tick| tick.t_s > 1.0);
-    // The bars are counted anew four times a second.
+    // The bars are counted four times per second.
     harness.run_steps(12);
     assert!(harness.query_all_by_label_contains("exceeded the deadline of 1000 µs").count() >= 3);
     assert!(harness.query_all_by_label_contains("Missed in the last 2 min: ").next().is_some());

@@ -1,4 +1,4 @@
-//! The check of a saved calibration at the start of the console, of a sensor whose bias has moved and of one whose has not.
+//! The bias check of a saved calibration at the start of the console, for a sensor with and without a moved bias.
 
 use std::{path::Path, process::Command};
 
@@ -9,7 +9,7 @@ use nima_tests::gravity::gravity;
 
 use crate::bench::{Console, can_press, read, shown, shows};
 
-/// A wrist that nobody guides and no trocar touches, with its bias off by `step_n` along x.
+/// A wrist without a guiding person or trocar contact, with its bias off by `step_n` along x.
 fn free_scene(step_n: f64) -> Scene {
     let mut scene = Scene::load("palpation").unwrap();
     scene.trocar = None;
@@ -42,14 +42,14 @@ fn a_bias_that_moved_warns_with_its_figure_and_blocks_nothing() {
 fn a_bias_that_did_not_move_is_fine_with_the_time_of_the_check() {
     let folder = tempfile::tempdir().unwrap();
     let mut console = console(folder.path(), 0.0);
-    read(&mut console, "N without contact, good");
+    read(&mut console, "N without contact, passed");
     let lines = console.state().in_force().lines();
     assert!(lines.iter().any(|line| line.starts_with("Bias, checked at ") && line.contains(" UTC: 0.0")), "{lines:?}");
     assert!(!shows(&console, "its bias has drifted"));
     assert!(can_press(&console, "Engage"));
 }
 
-/// What `nima run` prints of the bias, with calibrations in this folder.
+/// Output of `nima run` about the bias, with calibrations in this folder.
 fn run(store: &Path, step_n: f64) -> String {
     Store::open(store.join("calibrations")).save(&gravity()).unwrap();
     let (scene, _) = include_str!("../../../config/scenes/palpation.toml").split_once("[trocar]").unwrap();

@@ -1,4 +1,4 @@
-//! The endoscope's picture in the surgeon's view, from an emulated camera over TCP, and each of its faults in words.
+//! The endoscope image in the Surgeon view, from an emulated camera over TCP, and a text for each of its faults.
 
 use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, Shape, TouchPhase, pos2, vec2,
@@ -22,12 +22,12 @@ use nima_tests::plan;
 
 use crate::bench::{Console, TIMEOUT, comes, press, shown, until};
 
-/// Small pictures, so that a busy machine keeps up.
+/// Small images, so that a busy machine keeps up.
 pub(crate) fn camera() -> (Serving, Endoscope) {
     lenses(None)
 }
 
-/// The same with a second lens so far to the right of the first one, m.
+/// Like [`camera`], with a second lens at this distance to the right of the first one, m.
 pub(crate) fn lenses(baseline_m: Option<f64>) -> (Serving, Endoscope) {
     let scene = Scene::load("bimanual").unwrap();
     let mut camera = usual(&scene);
@@ -54,7 +54,7 @@ pub(crate) fn surgeon(endoscope: Endoscope, size: [f32; 2]) -> Console {
     harness
 }
 
-/// Waits until the picture is told so, and painted so.
+/// Waits until this text is reported and painted.
 pub(crate) fn told(harness: &mut Console, words: &str) {
     let is_told = comes(harness, TIMEOUT, |harness| {
         harness.query_by_label_contains(words).is_some() && (words.ends_with("live") || is_painted(harness, words))
@@ -85,25 +85,25 @@ fn has_picture(harness: &Console) -> bool {
 fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() {
     let (serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     assert!(comes(&mut harness, TIMEOUT, has_picture));
-    assert!(is_painted(&harness, "pictures a second") && is_painted(&harness, "Forces are drawn at the tips"));
+    assert!(is_painted(&harness, "images per second") && is_painted(&harness, "Forces are drawn at the tips"));
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "ceiling 4 N")));
     for (fault, words) in [
-        (EmulatedFault::Freeze, "Picture is frozen: nothing new for"),
-        (EmulatedFault::Black, "Picture is black"),
-        (EmulatedFault::Torn, "Picture is damaged: its end is missing"),
+        (EmulatedFault::Freeze, "Image is frozen: no new image for"),
+        (EmulatedFault::Black, "Image is black"),
+        (EmulatedFault::Torn, "Image is damaged: its end is missing"),
         (EmulatedFault::Late, "ms old"),
         (EmulatedFault::WrongSize, "Picture is 320 x 180 pixels, not 640 x 360"),
         (EmulatedFault::OtherFormat, "sends image/png, not motion JPEG"),
-        (EmulatedFault::Disconnect, "Picture is lost: nobody listens at 127.0.0.1"),
+        (EmulatedFault::Disconnect, "Image is lost: no response from 127.0.0.1"),
     ] {
         serving.faults.set(fault);
         told(&mut harness, words);
         serving.faults.set(EmulatedFault::None);
-        told(&mut harness, "Endoscope's picture: live");
+        told(&mut harness, "Endoscope image: live");
     }
-    // The loop went on: nothing of the picture concerns it.
+    // The loop continued: the image does not affect it.
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
 }
 
@@ -111,14 +111,14 @@ fn the_picture_is_shown_with_the_forces_in_it_and_each_of_its_faults_in_words() 
 fn a_key_hides_the_forces() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     harness.key_press(Key::O);
     harness.step();
     harness.step();
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "O draws the forces at the tips")));
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Forces are hidden; O draws them at the tips")));
 }
 
-/// Greatest opacity of the letters of these words, wherever they are painted.
+/// Opacities of the letters of this text, wherever it is painted.
 fn opacities(harness: &Console, words: &str) -> Vec<u8> {
     fn of(shape: &Shape, words: &str, found: &mut Vec<u8>) {
         match shape {
@@ -141,15 +141,15 @@ fn the_forces_fade_where_the_check_of_the_camera_was_worse_than_ten_pixels() {
         let (serving, mut endoscope) = camera();
         endoscope.camera.as_mut().unwrap().checked_px = checked_px;
         let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-        told(&mut harness, "Endoscope's picture: live");
+        told(&mut harness, "Endoscope image: live");
         (serving, harness)
     };
     let faint = |harness: &Console| opacities(harness, "ceiling 4 N").iter().filter(|most| **most < 128).count();
-    // The picture is half as wide as the one for which the 10 px are said.
+    // The image is half as wide as the one to which the limit of 10 px applies.
     let (_serving, mut good) = checked(Some(4.0));
     assert!(comes(&mut good, TIMEOUT, |harness| is_painted(harness, "Forces are drawn at the tips")));
     let (_serving, mut faded) = checked(Some(14.0));
-    // The gauges beside the picture have the same words.
+    // The gauges next to the image have the same text.
     assert!(comes(&mut faded, TIMEOUT, |harness| {
         is_painted(harness, "14 px beside the tips") && faint(harness) > faint(&good)
     }));
@@ -162,8 +162,8 @@ fn a_camera_whose_place_is_not_known_draws_no_forces_and_says_so() {
     camera.position_m = None;
     camera.world_from_camera_deg = None;
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "the camera's place is not known")));
+    told(&mut harness, "Endoscope image: live");
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "the camera position is unknown")));
     assert!(!is_painted(&harness, "O hides them"));
 }
 
@@ -172,12 +172,12 @@ fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
     let (_serving, endoscope) = lenses(Some(0.004));
     let view = Some(StereoView::Left);
     let mut harness = surgeon(Endoscope { view, baseline_m: Some(0.004), ..endoscope }, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     for (words, shares) in [
-        ("Left half", vec![[0.0, 0.5]]),
-        ("Right half", vec![[0.5, 1.0]]),
-        ("Both halves", vec![[0.0, 0.5], [0.5, 1.0]]),
-        ("Left half", vec![[0.0, 0.5]]),
+        ("Left image", vec![[0.0, 0.5]]),
+        ("Right image", vec![[0.5, 1.0]]),
+        ("Both images", vec![[0.0, 0.5], [0.5, 1.0]]),
+        ("Left image", vec![[0.0, 0.5]]),
     ] {
         let is_so = comes(&mut harness, TIMEOUT, |harness| {
             is_painted(harness, words) && halves(harness) == shares && has_forces(harness, shares.len() > 1)
@@ -188,7 +188,7 @@ fn a_key_chooses_the_half_of_two_lenses_and_the_forces_go_with_it() {
     }
 }
 
-/// Forces are drawn, in both halves of the view if they should be.
+/// Whether forces are drawn, in both halves of the view if `both`.
 fn has_forces(harness: &Console, both: bool) -> bool {
     let mut places = Vec::new();
     for clipped in &harness.output().shapes {
@@ -202,7 +202,7 @@ fn has_forces(harness: &Console, both: bool) -> bool {
     if both { places.iter().any(is_left) && !places.iter().all(is_left) } else { !places.is_empty() }
 }
 
-/// From where to where the picture is shown, in shares of its width.
+/// Start and end of the displayed parts of the image, as fractions of its width.
 fn halves(harness: &Console) -> Vec<[f32; 2]> {
     let shares = |shape: &Shape| match shape {
         Shape::Mesh(mesh) if is_picture(shape) => Some([mesh.vertices[0].uv.x, mesh.vertices[3].uv.x]),
@@ -215,15 +215,15 @@ fn halves(harness: &Console) -> Vec<[f32; 2]> {
 fn a_camera_that_is_not_there_is_told_with_a_cure_there_and_among_the_devices() {
     let endoscope = |url: &str| Endoscope { url: url.to_owned(), ..Endoscope::default() };
     let mut harness = surgeon(endoscope("http://127.0.0.1:1/"), [1280.0, 720.0]);
-    told(&mut harness, "Picture is lost: nobody listens at 127.0.0.1:1");
+    told(&mut harness, "Image is lost: no response from 127.0.0.1:1");
     assert!(is_painted(&harness, "Correct the port in the rig file"));
     harness.state_mut().settings_mut().layout = Layout { front: vec![Panel::Devices], ..Layout::default() };
     press(&mut harness, "Technician");
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "nobody listens at 127.0.0.1:1")));
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "no response from 127.0.0.1:1")));
     for (url, words) in [
         ("rtmp://127.0.0.1/", "cameras (/dev/video0) and files are supported"),
-        ("rtsp://127.0.0.1/", "Picture is lost: this program was built without RTSP and H.264"),
-        ("/dev/video987654", "Picture is lost: /dev/video987654 is not there"),
+        ("rtsp://127.0.0.1/", "Image is lost: this program was built without RTSP and H.264"),
+        ("/dev/video987654", "Image is lost: /dev/video987654 does not exist"),
     ] {
         told(&mut surgeon(endoscope(url), [1280.0, 720.0]), words);
     }
@@ -235,11 +235,11 @@ fn without_an_endoscope_the_field_is_drawn_as_ever() {
     harness.key_press(Key::F1);
     harness.step();
     harness.step();
-    assert!(harness.query_by_label_contains("Endoscope's picture").is_none());
+    assert!(harness.query_by_label_contains("Endoscope image").is_none());
     harness.get_by_label("Operating field");
 }
 
-/// Where the picture is, also beyond the view, and the part of it that is shown.
+/// Position of the image, including parts outside the view, and its displayed part.
 fn picture(harness: &Console) -> Option<(Rect, Rect)> {
     harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
         Shape::Mesh(mesh)
@@ -258,7 +258,7 @@ fn place(harness: &Console) -> Rect {
     picture(harness).unwrap().0
 }
 
-/// Turns the wheel over a place until the picture rests.
+/// Turns the wheel at a position until the image rests.
 fn wheel(harness: &mut Console, at: Pos2, turned: f32) {
     harness.event(Event::PointerMoved(at));
     harness.step();
@@ -294,7 +294,7 @@ fn double_click(harness: &mut Console, at: Pos2) {
 fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     assert!(comes(&mut harness, TIMEOUT, has_picture));
     let whole = place(&harness);
     let at = whole.center() + vec2(60.0, 40.0);
@@ -315,7 +315,7 @@ fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
     let moved = place(&harness).min.y - zoomed.min.y;
     assert!((moved - 50.0).abs() < 12.0, "moved by {moved}");
 
-    // Away from the tips, which are told at the edge.
+    // Away from the tips, which are marked at the edge.
     wheel(&mut harness, whole.left_bottom() + vec2(4.0, -4.0), 800.0);
     assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Right tip")), "the tip is still to be found");
     assert!(place(&harness).width() < 8.1 * whole.width());
@@ -329,7 +329,7 @@ fn the_wheel_zooms_a_drag_moves_and_a_double_click_shows_all() {
 fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(Endoscope { crop_px: [64, 0, 64, 0], ..endoscope }, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     assert!(comes(&mut harness, TIMEOUT, has_picture));
     let (by_file, part) = picture(&harness).unwrap();
     assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.0), pos2(0.9, 1.0)));
@@ -337,7 +337,7 @@ fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
     harness.run_steps(2);
     let (on_screen, part) = picture(&harness).unwrap();
     assert_eq!(part, Rect::from_min_max(pos2(0.1, 0.2), pos2(0.75, 1.0)));
-    // What is left is as large as it can be, and not distorted.
+    // The remaining part is as large as possible, and not distorted.
     assert!((on_screen.height() - by_file.height()).abs() < 1.0);
     let proportions = on_screen.width() / on_screen.height();
     assert!((proportions - 640.0 * 0.65 / (360.0 * 0.8)).abs() < 0.01, "{proportions}");
@@ -347,7 +347,7 @@ fn edges_are_cut_off_by_the_rig_file_and_on_the_screen() {
 fn forces_of_now_are_called_so() {
     let (_serving, endoscope) = camera();
     let mut harness = surgeon(endoscope, [1280.0, 720.0]);
-    told(&mut harness, "Endoscope's picture: live");
+    told(&mut harness, "Endoscope image: live");
     harness.state_mut().settings_mut().picture.forces_of_now = true;
-    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Forces of now, ahead of the picture")));
+    assert!(comes(&mut harness, TIMEOUT, |harness| is_painted(harness, "Current forces, ahead of the image")));
 }

@@ -1,5 +1,5 @@
-//! What is wrong with a screen: texts that are cut or lie on another, controls that overlap or leave the window, a stop that is not where a
-//! hand looks for it.
+//! Layout faults of a screen: texts that are cut or overlap, controls that overlap or leave the window, a stop button in the
+//! wrong place.
 
 use egui::{Pos2, Rect, Shape, accesskit};
 use egui_kittest::{
@@ -11,12 +11,12 @@ use nima_console::{
     language::{Language, pseudo},
 };
 
-/// What rounding may cost, points.
+/// Tolerance for rounding, points.
 const SLACK: f32 = 1.5;
-/// The texts of a button may come this close to its edge, points.
+/// Minimum distance between the texts of a button and its edge, points.
 const EDGE: f32 = 0.5;
 
-/// A text on the screen: its words, its place, and where it is allowed to be seen.
+/// A text on the screen: its characters, its position, and its allowed area.
 pub(crate) struct Text {
     words: String,
     place: Rect,
@@ -24,7 +24,7 @@ pub(crate) struct Text {
     cut: bool,
 }
 
-/// All texts in what was drawn last.
+/// All texts of the last frame.
 pub(crate) fn texts<A>(harness: &Harness<'_, A>) -> Vec<Text> {
     fn add(shape: &Shape, clip: Rect, texts: &mut Vec<Text>) {
         match shape {
@@ -45,7 +45,7 @@ pub(crate) fn texts<A>(harness: &Harness<'_, A>) -> Vec<Text> {
     texts
 }
 
-/// What is wrong with the texts of this picture; `field` is the operating field, where labels ride on moving things.
+/// Faults of the texts in this frame; `field` is the operating field, where labels move with objects.
 pub(crate) fn faults_of_texts(
     texts: &[Text],
     window: Rect,
@@ -65,7 +65,7 @@ pub(crate) fn faults_of_texts(
         let room = text.clip.intersect(window).expand(SLACK);
         let sideways = text.place.left() < room.left() || text.place.right() > room.right();
         let up_or_down = text.place.top() < room.top() || text.place.bottom() > room.bottom();
-        // A long column is scrolled; what is half seen at its end is seen whole a moment later.
+        // A long column is scrolled: a text cut at its end becomes visible by scrolling.
         if text.cut || sideways || (up_or_down && !scrolls) {
             faults.push(format!("cut: \"{}\" at {:?}", text.words, text.place));
         }
@@ -81,7 +81,7 @@ pub(crate) fn faults_of_texts(
     faults
 }
 
-/// Where a row of tabs that is longer than its group is scrolled sideways: what is cut there is a press away.
+/// Rows of tabs that are longer than their group and scroll sideways: a tab cut there can be scrolled into view.
 fn scrolled_tabs<A>(harness: &Harness<'_, A>) -> Vec<Rect> {
     let is_arrow = |name: Option<String>| name.is_some_and(|name| name.starts_with("Scroll tabs"));
     harness.query_all_by(move |node| is_arrow(node.label())).map(|node| node.rect()).collect()
@@ -92,7 +92,7 @@ fn is_among(rows: &[Rect], place: Rect) -> bool {
     rows.iter().any(|row| row.y_range().contains(place.center().y))
 }
 
-/// Controls that overlap, or that leave the window sideways. A control that is scrolled away is known by its words.
+/// Controls that overlap, or that leave the window sideways. A control scrolled out of view is recognised by its text.
 pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], window: Rect) -> Vec<String> {
     let seen = |name: &str, place: Rect| {
         let words = texts.iter().find(|text| text.words.trim() == name && place.contains(text.place.center()));
@@ -123,7 +123,7 @@ pub(crate) fn faults_of_controls<A>(harness: &Harness<'_, A>, texts: &[Text], wi
     faults
 }
 
-/// Buttons whose words are wider than they are.
+/// Buttons that are narrower than their text.
 pub(crate) fn too_wide<A>(harness: &Harness<'_, A>) -> Vec<String> {
     let buttons = harness.query_all_by(|node| node.role() == accesskit::Role::Button);
     let buttons: Vec<(String, Rect)> =
@@ -137,27 +137,27 @@ pub(crate) fn too_wide<A>(harness: &Harness<'_, A>) -> Vec<String> {
     texts(harness).iter().filter_map(leaves).collect()
 }
 
-/// How a page is looked at.
+/// How a page is checked.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Page {
-    /// Everything must be seen.
+    /// Everything must be visible.
     Whole,
     /// A long column may be scrolled.
     Scrolls,
-    /// Controls may be scrolled away too, and lie nowhere then.
+    /// Controls may also be scrolled out of view, and then have no position.
     Form,
-    /// It lies over something else.
+    /// Drawn over something else.
     Over,
 }
 
 impl Page {
-    /// How a view is looked at: the technician's panels scroll.
+    /// How a view is checked: the technician's panels scroll.
     pub(crate) fn of_view(role: Role) -> Self {
         if role == Role::Technician { Self::Scrolls } else { Self::Whole }
     }
 }
 
-/// Everything that is wrong in a window of this size.
+/// All faults in a window of this size.
 pub(crate) fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], page: Page) -> Vec<String> {
     let (texts, window, field) = seen(harness, size);
     let mut faults = faults_of_texts(&texts, window, field, page != Page::Whole, page == Page::Over);
@@ -167,7 +167,7 @@ pub(crate) fn faults(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2], page
     faults
 }
 
-/// What is seen in a window of this size: its texts, the window, the operating field.
+/// Content of a window of this size: its texts, the window, the operating field.
 fn seen(harness: &mut Harness<'_, ConsoleApp>, size: [f32; 2]) -> (Vec<Text>, Rect, Option<Rect>) {
     harness.set_size(size.into());
     // Sizes settle within some frames.

@@ -1,4 +1,5 @@
-//! A control stays the same control while alarms and messages come and go around it: what a person presses or drags in that frame must not be lost.
+//! A control keeps its id while alarms and messages appear and disappear around it: a press or drag in that frame must not be
+//! lost.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use crate::bench::{console_of, press, read, until};
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 const CONTROLS: [Role; 5] = [Role::Button, Role::Slider, Role::CheckBox, Role::SpinButton, Role::TextInput];
 
-/// The controls of a frame by name; of names that stand there twice none.
+/// The controls of a frame by name; duplicate names are left out.
 fn controls(harness: &Harness<'_, ConsoleApp>) -> BTreeMap<String, NodeId> {
     let mut named: BTreeMap<String, Vec<NodeId>> = BTreeMap::new();
     for role in CONTROLS {
@@ -33,7 +34,7 @@ fn controls(harness: &Harness<'_, ConsoleApp>) -> BTreeMap<String, NodeId> {
     named.into_iter().filter_map(|(name, ids)| (ids.len() == 1).then(|| (name, ids[0]))).collect()
 }
 
-/// What is another control now than it was.
+/// Controls whose id has changed.
 fn changed(before: &BTreeMap<String, NodeId>, harness: &Harness<'_, ConsoleApp>) -> Vec<String> {
     let now = controls(harness);
     before

@@ -1,4 +1,5 @@
-//! The technician's instruments on a running loop: interlock and gates light up, the gain knows where it is stable, moments are marked.
+//! The technician's panels on a running loop: interlock and gates are highlighted, the stable gain is shown, moments are
+//! marked.
 
 use egui::{Key, accesskit};
 use egui_kittest::{
@@ -35,7 +36,7 @@ fn the_interlock_of_each_hand_shows_its_state_and_the_reason() {
 
 #[test]
 fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
-    // Where nothing is touched it never becomes known.
+    // Without contact it never becomes known.
     let mut harness = console_of("free_motion", SIZE, |app| app);
     until(&mut harness, "the first ticks", |tick| tick.t_s > 0.1);
     harness.get_by_label("Highest stable gain: known after the first contact");
@@ -49,7 +50,7 @@ fn the_gain_tells_where_it_is_stable_once_there_was_a_contact() {
     harness.step();
     assert!(slider(&harness) == before, "what stands below would slip from the hand at the first contact");
     let told = harness.get_by_label_contains("stable up to").accesskit_node().value().unwrap();
-    // The scene's phantom: 300 to 500 N/m where it is pressed.
+    // The scene's phantom has 300 to 500 N/m at the pressed place.
     let n_m: f64 = told.split("at ").last().unwrap().trim_end_matches(" N/m").parse().unwrap();
     assert!((150.0..800.0).contains(&n_m), "{told}");
 }
@@ -71,6 +72,6 @@ fn one_key_marks_a_moment_also_while_the_traces_are_paused() {
     assert_eq!(marks_s.len(), 3);
     assert!(marks_s[2] >= 0.7, "{marks_s:?}");
     assert!(marks_s[1] >= 0.5 && marks_s[0] < marks_s[1], "{marks_s:?}");
-    harness.get_by_role_and_label(accesskit::Role::Button, "Go on");
+    harness.get_by_role_and_label(accesskit::Role::Button, "Resume");
     harness.get_by_label_contains("Force space.");
 }

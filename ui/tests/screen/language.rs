@@ -1,5 +1,6 @@
-//! The window in German and in the lengthened pseudo-language: on every view and page, at four sizes, no text is cut, lies on another one
-//! or leaves its button. What is pressed on the way is found by its English name; for a look the language is changed.
+//! The window in German and in the lengthened pseudo-language: on every view and page, at four sizes, no text is cut,
+//! overlaps another one or leaves its button. The test presses controls by their English names, and switches the language
+//! only for the checks.
 
 use std::{fs, path::Path};
 
@@ -18,11 +19,11 @@ use crate::{
     walk::VIEWS,
 };
 
-/// The smallest window, the sizes of common screens, and that in which the console opens; points.
+/// The smallest window, the sizes of common screens, and the initial size of the console; points.
 const SIZES: [[f32; 2]; 4] = [[1100.0, 680.0], [1280.0, 720.0], [1600.0, 1000.0], [1920.0, 1080.0]];
 const LANGUAGES: [Language; 2] = [Language::German, Language::Pseudo];
 
-/// What is wrong with this page in every language at every size.
+/// Faults of this page in every language at every size.
 fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
     let before = console.ctx.content_rect().size();
     let mut all = Vec::new();
@@ -42,12 +43,12 @@ fn look_at(console: &mut Console, page: &str, kind: Page) -> Vec<String> {
     all
 }
 
-/// A page of a wizard fits; for the tests that walk through it.
+/// Checks a page of a wizard, for the tests that go through the wizards.
 pub(crate) fn fits(console: &mut Console, page: &str) {
     none(&look_at(console, page, Page::Scrolls));
 }
 
-/// The same for a window that holds a wizard alone, as wide as its place in the smallest window of the console.
+/// Like [`fits`], for a window with only a wizard, as wide as its place in the smallest window of the console.
 pub(crate) fn fits_alone<A>(window: &mut Harness<'_, A>, page: &str) {
     let mut all = Vec::new();
     for language in LANGUAGES {
@@ -69,7 +70,7 @@ fn begin(scene: &str, folder: &Path) -> Console {
     console
 }
 
-/// What is found in each view.
+/// Faults in each view.
 fn views(console: &mut Console, what: &str) -> Vec<String> {
     let mut all = Vec::new();
     for (role, front) in VIEWS {
@@ -150,10 +151,10 @@ fn welcome_and_tour_fit() {
     let mut console = console_of("peg_transfer", SIZES[0], move |app| app.with_settings(Kept::open(&path)));
     until(&mut console, "any tick", |_| true);
     let mut all = look_at(&mut console, "welcome", Page::Over);
-    press(&mut console, "Go on with the simulated rig");
+    press(&mut console, "Continue with the simulated rig");
     for step in 1..=4 {
         all.extend(look_at(&mut console, &format!("step {step} of the tour"), Page::Over));
-        press(&mut console, if step < 4 { "Next step" } else { "Begin" });
+        press(&mut console, if step < 4 { "Next step" } else { "Start" });
     }
     none(&all);
 }
@@ -186,13 +187,13 @@ fn the_pages_of_a_study_and_a_trial_fit() {
     let mut all = look_at(&mut console, "list of studies", Page::Scrolls);
     pick(&mut console, "New study");
     all.extend(look_at(&mut console, "form of a study", Page::Form));
-    pick(&mut console, "Make the study");
+    pick(&mut console, "Create study");
     all.extend(look_at(&mut console, "new study", Page::Form));
     pick(&mut console, "Close the study");
     pick(&mut console, "Open Touching");
     pick(&mut console, "a simulated hand");
     all.extend(look_at(&mut console, "study", Page::Form));
-    pick(&mut console, "Begin the trial");
+    pick(&mut console, "Start the trial");
     bench::wait(&mut console, "a trial", |console| console.state().in_trial());
     until(&mut console, "idle", |tick| tick.state == LoopState::Idle);
     all.extend(look_at(&mut console, "trial", Page::Whole));
@@ -219,7 +220,7 @@ fn the_past_and_the_list_of_sessions_fit() {
     none(&all);
 }
 
-/// A window with one planted fault, and how many are found.
+/// Number of faults found in a window with one planted fault.
 fn planted(draw: impl FnMut(&mut egui::Ui) + 'static) -> usize {
     let size = [400.0, 300.0];
     let mut harness = Harness::builder().with_size(size).with_context_setup(theme::apply).build_ui(draw);
@@ -303,7 +304,7 @@ fn the_language_is_chosen_in_the_menu_at_once_taken_back_and_kept() {
     let mut again = begin("peg_transfer", folder.path());
     again.run_steps(3);
     assert!(bench::can_press(&again, "Halt"));
-    // The palette finds a command by its German name, and the language by its name in itself.
+    // The palette finds a command by its German name, and a language by its own name.
     again.key_press_modifiers(Modifiers::COMMAND, Key::P);
     again.run_steps(3);
     again.event(egui::Event::Text("english".to_owned()));

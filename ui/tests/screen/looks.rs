@@ -1,5 +1,5 @@
-//! Every role, panel, page and first page of a wizard looks as in its stored picture. Later pages of the wizards are compared where a test
-//! walks through them.
+//! Every role, panel, page and first page of a wizard looks as in its stored picture. Tests that go through the wizards
+//! compare their later pages.
 
 use std::{path::Path, time::Duration};
 
@@ -16,7 +16,7 @@ use crate::{
 };
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
-/// The moment of the recorded session, s: so late that the traces reach beyond their plots.
+/// The moment of the recorded session, s: late enough that the traces extend beyond their plots.
 const SHOWN_S: f64 = 12.5;
 
 /// A moment of a session on the virtual clock, which is the same on every computer.
@@ -34,7 +34,7 @@ fn every_role_and_panel_looks_as_stored() {
         console.state().past().is_some_and(|(_, t_s)| (t_s - SHOWN_S).abs() < 1e-9)
     });
     past::until_whole(&mut console);
-    // What was only plotted at first is drawn from the replay.
+    // Parts that were first drawn from recorded plots are drawn from the replay.
     comes(&mut console, Duration::from_secs(1), |_| false);
     let mut all = Vec::new();
     for (role, front) in VIEWS {
@@ -75,7 +75,7 @@ fn the_first_page_of_every_wizard_looks_as_stored() {
 fn idle(folder: &Path) -> Console {
     let folder = folder.to_path_buf();
     let plan = Plan { engage: false, ..plan("peg_transfer") };
-    // The surgeon's view is the calmest one under what opens over it.
+    // The Surgeon view is the calmest background for windows that open over it.
     let options = Options { role: Some(Role::Surgeon), ..Options::default() };
     let mut console = shown(&plan, SIZE, move |app| app.with_settings(toured(&folder)).with_options(options));
     until(&mut console, "a second", |tick| tick.t_s > 1.0);

@@ -26,7 +26,7 @@ fn window() -> (Harness<'static, Monitor>, Teller) {
     (harness, teller.recv().unwrap())
 }
 
-/// What the rig of this plan sends in its first seconds, as it comes over the network; it is stopped after six.
+/// Data that the rig of this plan sends in its first seconds over the network; it is stopped after six.
 fn sent(plan: &Plan) -> Vec<Moment> {
     let mut writer = MomentWriter::default();
     let mut moments = Vec::new();
@@ -63,7 +63,7 @@ fn rings_and_jaws_of_a_rig_elsewhere_are_shown() {
     window.run_steps(3);
     assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
     reads(&mut window, "Rings: passed 3, placed 2, dropped 0");
-    // The next bundle tells nothing new of them.
+    // The next batch contains no new objects.
     teller.tell(Heard::Shows(sent(&plan).drain(..20).collect()));
     window.run_steps(3);
     assert_eq!(window.state().live().unwrap().objects.as_ref(), Some(&objects));
@@ -74,7 +74,7 @@ fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
     let (mut window, teller) = window();
     reads(&mut window, "Connecting to the rig");
     assert!(teller.tell(Heard::Rests));
-    reads(&mut window, "no loop runs there now");
+    reads(&mut window, "no loop is running there");
 
     let plan = plan("peg_transfer");
     let moments = sent(&plan);
@@ -97,8 +97,8 @@ fn a_rig_elsewhere_is_shown_in_every_view_and_nothing_acts_on_it() {
     }
     teller.tell(Heard::Shows(stopped.to_vec()));
     reads(&mut window, "Stopped");
-    // What stays on the screen is told to be old.
-    reads(&mut window, "Nothing from the rig for");
+    // A display that is out of date is labelled.
+    reads(&mut window, "No data from the rig for");
     assert!(!shows(&window, "Stopped"), "a state that may be another by now");
     teller.tell(Heard::Trouble("rig theatre-1 does not answer".to_owned()));
     reads(&mut window, "does not answer");

@@ -1,4 +1,4 @@
-//! Recorded sessions on the screen: the list, the past in every view, and the machine that none of it reaches.
+//! Recorded sessions on the screen: the list, playback in every view, and that no control reaches the machine.
 
 use std::{
     path::{Path, PathBuf},
@@ -36,7 +36,7 @@ pub(crate) fn record(path: &Path, scene: &str, seconds: &str) {
     assert!(recorded.status.success(), "{}", String::from_utf8_lossy(&recorded.stderr));
 }
 
-/// Steps the window until the past on the screen is as it was.
+/// Steps the window until playback is fully replayed.
 pub(crate) fn until_whole(harness: &mut Harness<'_, ConsoleApp>) {
     wait(harness, "the session is replayed", |harness| harness.state().past_ticks().is_some());
     harness.run_steps(3);
@@ -68,7 +68,7 @@ fn watch(end: &TapEnd, seen: &Mutex<Vec<Command>>) {
     }
 }
 
-/// Presses everything that can be pressed, and drags the field and the traces; the keys of the views too.
+/// Presses every enabled control, and drags the field and the traces; the keys of the views too.
 fn do_everything(harness: &mut Harness<'_, ConsoleApp>) -> usize {
     let is_control = |kind: Kind| {
         matches!(
@@ -80,8 +80,8 @@ fn do_everything(harness: &mut Harness<'_, ConsoleApp>) -> usize {
         .get_all_by(move |node| is_control(node.role()))
         .filter(|node| {
             let name = node.accesskit_node().label().unwrap_or_default();
-            // What leaves the past, stops, or opens something over the rest is pressed elsewhere.
-            !["Stop", "Live again (L)", "Close", "View", "Report", "Save the stretch"].contains(&name.as_str())
+            // Other tests press controls that leave playback, stop, or open something over the rest.
+            !["Stop", "Return to live (L)", "Close", "View", "Report", "Save excerpt"].contains(&name.as_str())
         })
         .map(|node| node.rect().center())
         .collect();
@@ -149,7 +149,9 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     for role in Role::ALL {
         harness.state_mut().settings_mut().role = role;
         harness.run_steps(3);
-        assert!(harness.query_by_label("PAST").is_some() && harness.query_by_label("Time of the session").is_some());
+        assert!(
+            harness.query_by_label("PLAYBACK").is_some() && harness.query_by_label("Time of the session").is_some()
+        );
     }
     harness.state_mut().show_past(2.5);
     harness.step();
@@ -168,15 +170,15 @@ fn the_past_looks_like_the_past_and_one_key_leaves_it() {
     harness.key_press(Key::L);
     harness.step();
     harness.run_steps(2);
-    assert!(harness.query_by_label("PAST").is_none() && harness.state().past().is_none());
+    assert!(harness.query_by_label("PLAYBACK").is_none() && harness.state().past().is_none());
 }
 
-/// What a pointer is told that moves along the time line until it is over these words.
+/// Hover text of the time line at the place where it contains this text.
 fn found_along_the_line(harness: &mut Harness<'_, ConsoleApp>, at: f64, words: &str) -> bool {
     let line = harness.get_by_label("Time of the session").rect();
     [0.0, -6.0, 6.0].into_iter().any(|aside| {
         harness.hover_at(line.left_center() + egui::vec2(line.width() * at as f32 + aside, 0.0));
-        // A hint appears when the pointer has been still for half a second.
+        // A hover text appears when the pointer has been still for half a second.
         harness.run_steps(20);
         shows(harness, words)
     })
@@ -211,7 +213,7 @@ fn rings_jaws_and_what_happened_to_them_are_on_the_screen_of_the_past() {
     assert!(found_along_the_line(&mut harness, lifted_s / 9.0, "ring 1 lifted off its peg by the left instrument"));
 }
 
-/// Steps the window until this session is in the list and its row stands still.
+/// Steps the window until this session is in the list and its row no longer moves.
 pub(crate) fn until_listed(harness: &mut Harness<'_, ConsoleApp>, name: &str) {
     let open = format!("Open {name}");
     wait(harness, &open, |harness| harness.query_by_role_and_label(Kind::Button, &open).is_some());

@@ -1,8 +1,9 @@
-//! Pictures of the window, compared with those in `stored/`. They are drawn without a GPU: egui's triangles are filled here, in grey, and
-//! shrunk to a quarter. What only OpenGL draws stays empty, and pictures within the window are plain rectangles.
+//! Pictures of the window, compared with those in `stored/`. They are drawn without a GPU: egui's triangles are filled here,
+//! in grey, and reduced to a quarter. Content drawn only by OpenGL stays empty, and images within the window are plain
+//! rectangles.
 //!
-//! Numbers vary with the clock of the computer, so each text with a digit is drawn as a bar of its size. What this computer takes and
-//! has, timing and ports, is covered, and names of temporary folders are missing.
+//! Numbers vary with the clock of the computer, so each text with a digit is drawn as a bar of its size. Timing and ports of
+//! this computer are covered, and names of temporary folders are missing.
 
 use std::{env, fs, path::Path};
 
@@ -14,19 +15,19 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use image::GrayImage;
 use nima_console::console::theme;
 
-/// Points of the window for each pixel of a picture, in each direction.
+/// Points of the window per pixel of a picture, in each direction.
 const SHRUNK: usize = 4;
 /// Greys are stored in steps of this size, which makes the files small.
 const GREY_STEP: f32 = 16.0;
 /// Side of the squares that are compared, pixels: 16 points, the height of a line of text.
 const SQUARE: u32 = 4;
-/// Mean difference of grey in a square, of 255, from which on the pictures differ. The steps of grey are 4 on average, another antialiasing of
-/// the same letters 3; a word that is gone or has moved by half a letter is 25.
+/// Mean difference of grey in a square, of 255, from which on the pictures differ. The steps of grey are 4 on average,
+/// another antialiasing of the same letters 3; a word that is missing or has moved by half a letter is 25.
 const TOLERANCE: f32 = 12.0;
-/// Colour of the bars in place of texts with a digit.
+/// Colour of the bars instead of texts with a digit.
 const BAR: Color32 = Color32::GRAY;
 
-/// How the window differs from its stored picture; `None` if it does not. `UPDATE_SNAPSHOTS=1` stores the new one.
+/// Difference of the window from its stored picture; `None` if there is none. `UPDATE_SNAPSHOTS=1` stores the new one.
 pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored").join(name).with_extension("png");
     let now = drawn(window);
@@ -51,14 +52,14 @@ pub(crate) fn differs<A>(window: &Harness<'_, A>, name: &str) -> Option<String> 
     (!is_meant).then_some(told)
 }
 
-/// The window looks as in its stored picture.
+/// Checks that the window looks as in its stored picture.
 pub(crate) fn same<A>(window: &Harness<'_, A>, name: &str) {
     if let Some(difference) = differs(window, name) {
         panic!("{difference}");
     }
 }
 
-/// Where the pictures differ most, and by how much.
+/// Place and size of the largest difference.
 fn difference(stored: &GrayImage, now: &GrayImage) -> Option<String> {
     if stored.dimensions() != now.dimensions() {
         return Some(format!("{:?} pixels were {:?}", now.dimensions(), stored.dimensions()));
@@ -81,7 +82,7 @@ fn difference(stored: &GrayImage, now: &GrayImage) -> Option<String> {
     Some(format!("{} squares of 16 points, most at {at:?} points, by {by:.0} of 255", differing.len()))
 }
 
-/// What the window shows.
+/// Picture of the window.
 fn drawn<A>(window: &Harness<'_, A>) -> GrayImage {
     let Vec2 { x, y } = window.ctx.content_rect().size();
     assert!((window.ctx.pixels_per_point() - 1.0).abs() < 1e-6, "a pixel is a point");
@@ -102,7 +103,7 @@ fn drawn<A>(window: &Harness<'_, A>) -> GrayImage {
     sheet.shrunk()
 }
 
-/// Places of what depends on the computer: the figures of timing, and the devices on the start page.
+/// Areas that depend on the computer: the figures of timing, and the devices on the start page.
 fn of_this_computer<A>(window: &Harness<'_, A>) -> Vec<Rect> {
     let timing = window.query_all_by_label_contains("histogram").chain(window.query_all_by_label("\u{b5}s"));
     let ports = window.query_all_by_label("Plugged into this computer").map(|node| node.rect());
@@ -127,18 +128,19 @@ struct Sheet {
     greys: Vec<f32>,
 }
 
-/// A number over a triangle: its value at the origin, and how it grows with x and y.
+/// A number over a triangle: its value at the origin, and its gradients in x and y.
 type Plane = [f32; 3];
 
 impl Sheet {
-    /// Fills the part of a triangle within `clip`. Pixels belong to a triangle by their centres, so that neighbours never share one.
+    /// Fills the part of a triangle within `clip`. Pixels belong to a triangle by their centres, so that neighbours never
+    /// share one.
     fn fill(&mut self, corners: [&Vertex; 3], clip: Rect, letters: Option<&ColorImage>) {
         let [a, b, c] = corners.map(|corner| corner.pos);
         let doubled_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         if doubled_area.abs() < 1e-6 {
             return;
         }
-        // The weight of a corner is 1 there, and 0 along the edge between the other two.
+        // The weight of a corner is 1 there, and 0 along the opposite edge.
         let weight = |from: Pos2, to: Pos2| -> Plane {
             let [per_x, per_y] = [(from.y - to.y) / doubled_area, (to.x - from.x) / doubled_area];
             [-per_x * from.x - per_y * from.y, per_x, per_y]
@@ -200,17 +202,17 @@ impl Sheet {
     }
 }
 
-/// The first pixel whose centre is not before this place.
+/// The first pixel whose centre is not before this position.
 fn from_centre(place: f32) -> usize {
     (place - 0.5).ceil().max(0.0) as usize
 }
 
-/// Not the brightness: red, green and blue of the same brightness are to differ.
+/// Not the brightness: red, green and blue of the same brightness must differ.
 fn grey(colour: Color32) -> f32 {
     0.5 * f32::from(colour.r()) + 0.35 * f32::from(colour.g()) + 0.15 * f32::from(colour.b())
 }
 
-/// How much of this place a letter covers.
+/// Coverage of this position by a letter.
 fn covered(letters: &ColorImage, uv: [f32; 2]) -> f32 {
     let [x, y] = [0, 1].map(|i| ((uv[i] * letters.size[i] as f32) as usize).min(letters.size[i] - 1));
     f32::from(letters.pixels[y * letters.size[0] + x].a()) / 255.0

@@ -1,4 +1,4 @@
-//! The ready check on its page, walked by accessible names on the simulated rig.
+//! The ready check on its page, driven by accessible names on the simulated rig.
 
 use std::path::Path;
 
@@ -27,28 +27,28 @@ fn the_list_is_gone_through_by_the_person_at_the_screen_and_the_one_at_the_arm()
     let mut console = console(&folder.path().join("calibrations"));
     until(&mut console, "a tick", |tick| tick.state == LoopState::Idle);
     press(&mut console, "Ready check…");
-    read(&mut console, "Who checks");
+    read(&mut console, "Checked by");
     read(&mut console, "Devices present and steady: left out, this rig is simulated");
     // The simulated person obeys the instructions at the arm; the stop is pressed here.
-    read(&mut console, "Press the stop");
+    read(&mut console, "Press Stop");
     assert!(shows(&console, "Right arm: direction of the force: "), "the push was made");
     assert!(!can_press(&console, "Engage"), "nobody engages during the check");
     press(&mut console, "Stop");
     until(&mut console, "stopped", |tick| tick.state == LoopState::Stopped);
     press(&mut console, "Release stop");
-    for watchdog in ["Watchdog over the loop", "Watchdog over the measurements", "Watchdog over the link"] {
+    for watchdog in ["Watchdog of the loop", "Watchdog of the measurements", "Watchdog of the link"] {
         until(&mut console, watchdog, |tick| {
             matches!(tick.state, LoopState::Faulted(_)) && tick.rendered_n.norm() == 0.0
         });
         press(&mut console, "Release stop");
         read(&mut console, &format!("{watchdog}: 0."));
     }
-    read(&mut console, "Ready: every point is in order");
-    read(&mut console, "Kept in ");
+    read(&mut console, "Ready: all points passed");
+    read(&mut console, "Saved in ");
     let record = Store::open(folder.path().join("calibrations")).last_check("Simulated rig").unwrap();
     assert!(record.passed && record.items.iter().all(|item| item.outcome != Outcome::Failed), "{record:?}");
     press(&mut console, "Back to the monitor");
-    assert!(!shows(&console, "Who checks"));
+    assert!(!shows(&console, "Checked by"));
 }
 
 #[test]
@@ -60,10 +60,10 @@ fn all_calibrations_stand_on_one_page_and_each_is_repeated_by_its_button() {
     read(&mut console, "Right arm: sensor SIM-S1-0001, Simulated grasper");
     assert!(shows(&console, "Accepted, held-out error 0.0") && shows(&console, ", less than a day old"));
     assert!(shows(&console, "not calibrated"), "the correspondence is missing");
-    // What the check of the bias finds in the meantime comes without a click.
-    read(&mut console, "N without contact, good");
-    pick(&mut console, "Redo Right arm, gravity");
-    read(&mut console, "let go of it: nothing may touch the tool");
+    // The result of the bias check appears without a click.
+    read(&mut console, "N without contact, passed");
+    pick(&mut console, "Recalibrate Right arm, gravity");
+    read(&mut console, "release it: nothing may touch the tool");
     pick(&mut console, "All calibrations…");
     read(&mut console, "Since then");
     pick(&mut console, "Back to the monitor");

@@ -1,4 +1,4 @@
-//! Three people before one loop: what each sees, and that changing between them changes nothing but the view.
+//! Three roles of one loop: the content of each view, and that switching changes nothing but the view.
 
 use egui::{Key, accesskit};
 use egui_kittest::kittest::Queryable as _;

@@ -32,7 +32,7 @@ fn another_scene_and_another_rig_start_idle_and_are_offered_again() {
     let mut harness = console(folder.path());
     harness.key_press(Key::F6);
     harness.step();
-    // By its name: what is plugged in comes a moment later, and moves the page under a pointer.
+    // By its name: the list of connected devices appears a moment later, and moves the page under a pointer.
     pick(&mut harness, "Bimanual peg transfer");
     pick(&mut harness, "Start");
     until_runs(&mut harness, "simulated", "bimanual");
@@ -76,14 +76,14 @@ fn a_rig_is_made_from_another_and_used() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
     press(&mut harness, "Rig");
-    pick(&mut harness, "Make a copy of the chosen rig");
-    harness.get_by_label_contains("Give it a name");
+    pick(&mut harness, "Copy the chosen rig");
+    harness.get_by_label_contains("Enter a name");
     let field = harness.get_by_role_and_label(Role::TextInput, "Name of a new rig");
     field.focus();
     harness.step();
     harness.get_by_role_and_label(Role::TextInput, "Name of a new rig").type_text("Theatre 3");
     harness.step();
-    pick(&mut harness, "Make a copy of the chosen rig");
+    pick(&mut harness, "Copy the chosen rig");
     let path = folder.path().join("rigs/theatre-3.toml");
     assert!(path.exists());
     pick(&mut harness, "Start");
@@ -95,7 +95,7 @@ fn a_rig_is_made_from_another_and_used() {
 fn what_cannot_start_is_told_and_what_ran_before_runs_again() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
-    // The scene asks for a wrist sensor that this rig does not name.
+    // The scene needs a wrist sensor that this rig does not have.
     let rig = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/rigs/simulated.toml")).unwrap();
     let bare = rig.split("[simulated.right]").next().unwrap().replace("Simulated rig", "Bare rig");
     std::fs::create_dir_all(folder.path().join("rigs")).unwrap();
@@ -124,9 +124,9 @@ fn a_stop_on_the_start_page_stops() {
 }
 
 const ADDRESS: &str = "Address of the endoscope";
-const WRITE: &str = "Write this address into the rig";
+const WRITE: &str = "Write this address to the rig";
 
-/// Types another address in place of the one that is there.
+/// Replaces the address by typing.
 fn type_address(harness: &mut Harness<'_, ConsoleApp>, address: &str) {
     harness.get_by_role_and_label(Role::TextInput, ADDRESS).focus();
     harness.step();
@@ -141,11 +141,11 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
     let folder = tempfile::tempdir().unwrap();
     let mut harness = console(folder.path());
     press(&mut harness, "Rig");
-    harness.get_by_label_contains("None: the surgeon's view draws the field");
+    harness.get_by_label_contains("None: the Surgeon view draws the field");
     for (address, cause, cure) in [
-        ("http://127.0.0.1:1/", "nobody listens at 127.0.0.1:1", "Correct the port"),
-        ("/no/such/film.mjpeg", "not there", "Put the file there"),
-        ("ftp://127.0.0.1/", "No picture:", "Give http://HOST:PORT/PATH"),
+        ("http://127.0.0.1:1/", "no response from 127.0.0.1:1", "Correct the port"),
+        ("/no/such/film.mjpeg", "no such file", "Put the file there"),
+        ("ftp://127.0.0.1/", "No image:", "Enter http://HOST:PORT/PATH"),
     ] {
         type_address(&mut harness, address);
         read(&mut harness, cause);
@@ -155,20 +155,20 @@ fn an_endoscope_is_tried_while_its_address_is_typed_and_written_without_editing_
     read(&mut harness, "Sends 640 x 360 pixels");
     pick(&mut harness, WRITE);
     let path = folder.path().join("rigs/simulated-2.toml");
-    read(&mut harness, "simulated-2.toml. Start it to use the address.");
+    read(&mut harness, "simulated-2.toml. Start the rig to use the address.");
     assert!(std::fs::read_to_string(&path).unwrap().contains(&serving.endpoint));
     pick(&mut harness, "Start");
     until_runs(&mut harness, path.to_str().unwrap(), "peg_transfer");
     assert_eq!(harness.state().rig().endoscope.as_ref().unwrap().url, serving.endpoint);
-    // Of the rig that runs, the picture is not opened a second time.
+    // The image of the running rig is not opened a second time.
     press(&mut harness, "Rig");
     read(&mut harness, "live");
     type_address(&mut harness, " ");
-    pick(&mut harness, "Take the endoscope out of the rig");
+    pick(&mut harness, "Remove the endoscope from the rig");
     assert!(!std::fs::read_to_string(&path).unwrap().contains("endoscope"));
 }
 
-/// The console as somebody sees it who has never started it.
+/// The console at its first start.
 fn newcomer(folder: &Path, size: [f32; 2]) -> Harness<'static, ConsoleApp> {
     let folder = folder.to_path_buf();
     let mut harness = console_of("peg_transfer", size, move |app| app.with_settings(Kept::open(&folder)));
@@ -177,9 +177,9 @@ fn newcomer(folder: &Path, size: [f32; 2]) -> Harness<'static, ConsoleApp> {
 }
 
 const WAYS: [(&str, &str); 3] = [
-    ("Go on with the simulated rig", "Next step"),
+    ("Continue with the simulated rig", "Next step"),
     ("Watch the demonstration", "What you see"),
-    ("Choose or make a rig of your own", "1. Choose a rig"),
+    ("Choose or create your own rig", "1. Choose a rig"),
 ];
 
 #[test]

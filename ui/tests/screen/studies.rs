@@ -1,4 +1,4 @@
-//! User studies in the window: from a ready study to a report by clicks, and blind until the unblinding.
+//! User studies in the window: from a template to a report by clicks, and blind until unblinding.
 
 use std::{
     fs,
@@ -28,10 +28,10 @@ use crate::bench::{
 };
 
 pub(crate) const SIZE: [f32; 2] = [1600.0, 1000.0];
-/// How much faster than real time a trial goes.
+/// Speed of a trial, as a multiple of real time.
 const SPEED: f64 = 6.0;
 const AT: &str = "2026-01-01T09:00:00Z";
-/// Makes a study among the user's data in which the right hand touches tissue for so many seconds.
+/// Creates a study among the user's data in which the right hand touches tissue for this duration.
 pub(crate) fn make(data: &Path, head: &str, seconds: f64, rest: &str) -> PathBuf {
     let text = study_file(&format!("participants = 2\n{head}"), seconds, &format!("{BLIND}{rest}"));
     let file = StudyFile::from_toml(&text).unwrap();
@@ -48,7 +48,7 @@ pub(crate) fn console(data: &Path, options: Options) -> Console {
     shown_at(SPEED, &plan("peg_transfer"), SIZE, move |app| app.with_settings(toured(&data)).with_options(options))
 }
 
-/// Opens the study that [`make`] has made.
+/// Opens the study created by [`make`].
 pub(crate) fn open(window: &mut Console) {
     until(window, "any tick", |_| true);
     window.key_press(Key::F8);
@@ -57,7 +57,7 @@ pub(crate) fn open(window: &mut Console) {
     read(window, "Next step");
 }
 
-/// Begins the next trial and engages.
+/// Starts the next trial and engages.
 pub(crate) fn begin(window: &mut Console, button: &str) {
     pick(window, button);
     wait(window, "a trial", |window| window.state().in_trial());
@@ -66,7 +66,7 @@ pub(crate) fn begin(window: &mut Console, button: &str) {
     until(window, "engaged", |tick| tick.state == LoopState::Engaged);
 }
 
-/// Does the next trial to its end.
+/// Completes the next trial.
 fn trial(window: &mut Console, button: &str) {
     begin(window, button);
     wait(window, "the end of the trial", |window| !window.state().in_trial());
@@ -95,22 +95,22 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     press(&mut window, "Rig");
     pick(&mut window, "User studies");
     pick(&mut window, "New study");
-    pick(&mut window, "Short, for trying out");
+    pick(&mut window, "Short, to try it out");
     set(&mut window, "Participants", 0.0);
-    set(&mut window, "Trials of each condition", 0.0);
-    pick(&mut window, "Make the study");
+    set(&mut window, "Trials per condition", 0.0);
+    pick(&mut window, "Create study");
     for mistake in ["participants = 0", "trials = 0"] {
         assert!(shows(&window, mistake), "all are told at once: {:?}", texts(&window));
     }
     assert!(!folder.path().join("studies").exists(), "nothing is made of a study with mistakes");
     set(&mut window, "Participants", 4.0);
-    set(&mut window, "Trials of each condition", 2.0);
-    pick(&mut window, "Make the study");
+    set(&mut window, "Trials per condition", 2.0);
+    pick(&mut window, "Create study");
     let place = folder.path().join("studies/short-trial-of-a-study");
     let commitment = Study::read(&place).unwrap().plan().commitment.clone();
     read(&mut window, &commitment);
 
-    begin(&mut window, "Begin the trial");
+    begin(&mut window, "Start the trial");
     assert!(shows(&window, "Trial 1 of 4, condition "), "{:?}", texts(&window));
     until(&mut window, "the participant's hand holds the instrument", |tick| tick.guide_m.is_some());
     let before_m = window.state().tick().unwrap().guide_m.unwrap();
@@ -123,13 +123,13 @@ fn from_a_ready_study_to_the_end_of_its_first_trial_by_clicks() {
     window.run_steps(5);
     assert!(window.state().tick().unwrap().guide_m.is_some(), "it cannot be let go");
     wait(&mut window, "the end", |window| !window.state().in_trial());
-    // A task without an end has no time of completion.
-    read(&mut window, "Trial 1: the time is over");
+    // A task without an end has no completion time.
+    read(&mut window, "Trial 1: the time limit is reached");
     let study = Study::read(&place).unwrap();
     let made = &study.state().progress("P01").unwrap().trials;
     assert!(made.len() == 1 && !made[0].simulated, "{made:?}");
     assert!(made[0].measures.as_ref().unwrap()["path_length_m_right"] > 0.004, "{made:?}");
-    assert!(shows(&window, "No trial was completed yet"), "{:?}", texts(&window));
+    assert!(shows(&window, "No trial completed yet"), "{:?}", texts(&window));
     pick(&mut window, "Close the study");
     wait(&mut window, "what ran before", |window| window.state().running().scene == "peg_transfer");
 }
@@ -153,7 +153,7 @@ fn tick(window: &mut Console, name: &str) {
     window.run_steps(2);
 }
 
-/// The middles of the circles around tips.
+/// Centres of the circles around tips.
 fn circles(window: &Console) -> Vec<Pos2> {
     fn add(shape: &Shape, found: &mut Vec<Pos2>) {
         match shape {
@@ -167,7 +167,7 @@ fn circles(window: &Console) -> Vec<Pos2> {
     found
 }
 
-/// Whether a circle is in the undimmed part of the round picture.
+/// Whether a circle is in the undimmed part of the round image.
 fn is_in_picture(window: &Console, at: Pos2) -> bool {
     let rect = window.get_by_role_and_label(Role::Canvas, "Operating field").rect();
     let clear = 0.57 * rect.height().min(rect.width());
@@ -186,38 +186,38 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     choose(&mut window, "Scene", "Loop along a wire");
     assert!(!shows(&window, "drops \u{d7}"), "no trial there has drops");
     choose(&mut window, "Scene", "Rings on pegs");
-    tick(&mut window, "Only some of its rings");
+    tick(&mut window, "Only some of the rings");
     set(&mut window, "Rings", 2.0);
-    set(&mut window, "A trial is over after", 0.0);
+    set(&mut window, "Time limit of a trial", 0.0);
     for name in
-        ["Practice before the first trial", "Breaks between trials", "Record every trial (about 36 MB a minute)"]
+        ["Practice before the first trial", "Breaks between trials", "Record every trial (about 36 MB per minute)"]
     {
         tick(&mut window, name);
     }
     set(&mut window, "Participants", 6.0);
-    set(&mut window, "Trials of each condition", 1.0);
+    set(&mut window, "Trials per condition", 1.0);
     choose(&mut window, "Primary measure", "idle_time_s: How long both hands rested");
-    choose(&mut window, "Add a measure", "drops: How often a ring was dropped");
-    choose(&mut window, "Add a measure", "drops: How often a ring was dropped");
+    choose(&mut window, "Add measure", "drops: How often a ring was dropped");
+    choose(&mut window, "Add measure", "drops: How often a ring was dropped");
     let rules = window.query_all_by_label_contains(": leaves out").count();
     for number in (1..=rules).rev() {
         pick(&mut window, &format!("Rule {number}: Remove"));
     }
     read(&mut window, "No rule");
-    pick(&mut window, "Add a rule");
+    pick(&mut window, "Add rule");
     choose(&mut window, "Rule 1: Measure", "trial_time_s: How long the trial lasted");
     choose(&mut window, "Rule 1: is", "below");
     choose(&mut window, "Rule 1: leaves out", "the participant");
-    set(&mut window, "Rule 1: from so many times on", 2.0);
-    pick(&mut window, "Make the study");
-    for mistake in ["time_limit_s = 0", "drops is there twice", "exclusion 1: limit is missing"] {
+    set(&mut window, "Rule 1: from this many times", 2.0);
+    pick(&mut window, "Create study");
+    for mistake in ["time_limit_s = 0", "drops occurs twice", "exclusion 1: limit is missing"] {
         assert!(shows(&window, mistake), "{mistake}: {:?}", texts(&window));
     }
-    set(&mut window, "A trial is over after", 30.0);
+    set(&mut window, "Time limit of a trial", 30.0);
     set(&mut window, "Rule 1: Limit", 5.0);
     window.query_all_by_label_contains("drops \u{d7}").last().unwrap().click_accesskit();
     window.run_steps(2);
-    pick(&mut window, "Make the study");
+    pick(&mut window, "Create study");
 
     let place = folder.path().join("studies/two-rings");
     let study = Study::read(&place).unwrap();
@@ -232,7 +232,7 @@ fn scene_task_measures_and_rules_are_made_in_the_form_and_both_tips_are_seen_fro
     assert_eq!(scene.objects.unwrap().rings.len(), 2);
     assert!((TaskFile::of(&scene.task.unwrap()).unwrap().time_limit_s - 30.0).abs() < 1e-9);
 
-    pick(&mut window, "Begin the trial");
+    pick(&mut window, "Start the trial");
     wait(&mut window, "a trial", |window| window.state().in_trial());
     for _ in 0..3 {
         let found = circles(&window);
@@ -257,21 +257,24 @@ fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else
         read(&mut window, &format!("Trial {number} of 12, condition "));
         match number {
             3 => {
-                begin(&mut window, "Begin the trial");
-                press(&mut window, "Give up this trial");
-                press(&mut window, "Give up now?");
+                begin(&mut window, "Start the trial");
+                press(&mut window, "Abort this trial");
+                press(&mut window, "Abort now?");
                 read(&mut window, "Trial 3: broken off (given up by the operator)");
             }
             6 => {
-                begin(&mut window, "Begin the trial");
+                begin(&mut window, "Start the trial");
                 press(&mut window, "Stop");
                 until(&mut window, "stopped", |tick| tick.state == LoopState::Stopped);
-                assert!(shows(&window, "it was stopped") && window.state().in_trial(), "the stop stays on the screen");
+                assert!(
+                    shows(&window, "This trial was stopped") && window.state().in_trial(),
+                    "the stop stays on the screen"
+                );
                 press(&mut window, "Release stop");
                 read(&mut window, "Trial 6: broken off (stopped by the operator)");
             }
             9 => {
-                begin(&mut window, "Begin the trial");
+                begin(&mut window, "Start the trial");
                 drop(window);
                 assert!(journal(&place).lines().last().unwrap().contains("trial_began"));
                 window = console(folder.path(), Options::default());
@@ -283,7 +286,7 @@ fn twelve_trials_with_one_given_up_one_stopped_and_a_power_cut_lose_nothing_else
         if [3, 6, 9].contains(&number) {
             read(&mut window, ", attempt 2");
         }
-        trial(&mut window, "Begin the trial");
+        trial(&mut window, "Start the trial");
     }
     read(&mut window, "Finished");
     let study = Study::read(&place).unwrap();
@@ -305,7 +308,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
     open(&mut window);
     pick(&mut window, "a simulated hand");
     for number in 1..=2 {
-        trial(&mut window, "Begin the trial");
+        trial(&mut window, "Start the trial");
         pick(&mut window, "Fill in the questionnaire");
         for (name, value) in
             ["Mental", "Physical", "Temporal", "Performance", "Effort"].into_iter().zip([60.0, 30.0, 45.0, 30.0, 15.0])
@@ -313,7 +316,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
             rate(&mut window, name, value);
         }
         assert!(shows(&window, "Missing: frustration, 15 pairs") && !can_press(&window, "Submit"));
-        // A tap whose press and release come in one frame, on the middle of the line.
+        // A tap whose press and release arrive in one frame, on the middle of the line.
         window.get_by_role_and_label(Role::Slider, "Frustration").click();
         window.run_steps(2);
         assert!(shows(&window, "Missing: 15 pairs"), "{:?}", texts(&window));
@@ -331,7 +334,7 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
         pick(&mut window, "1: 6");
         pick(&mut window, "Submit");
         if number == 1 {
-            pick(&mut window, "Begin the break");
+            pick(&mut window, "Start the break");
             assert!(!can_press(&window, "End the break"));
             let began = Instant::now();
             pick(&mut window, "End the break");
@@ -343,21 +346,21 @@ fn questionnaires_break_notes_exclusion_unblinding_and_report_are_done_on_the_sc
         pick(&mut window, &format!("{number}: {answer}"));
     }
     pick(&mut window, "Submit");
-    write_into(&mut window, "What do you want to tell us?", "it was easy");
+    write_into(&mut window, "What would you like to tell us?", "it was easy");
     pick(&mut window, "Submit");
     read(&mut window, "Finished");
 
     write_into(&mut window, "What happened", "the light flickered");
-    pick(&mut window, "Keep the note");
+    pick(&mut window, "Save note");
     pick(&mut window, "Trial 2");
     write_into(&mut window, "Reason", "a telephone rang");
-    pick(&mut window, "Leave it out");
+    pick(&mut window, "Exclude");
     read(&mut window, "P01, trial 2: left out");
     pick(&mut window, "Write the report");
     read(&mut window, "Written: ");
     assert!(!can_press(&window, "Unblind the study"), "neither name nor reason");
     write_into(&mut window, "Your name", "A. Person");
-    write_into(&mut window, "Reason of the unblinding", "end");
+    write_into(&mut window, "Reason for unblinding", "end");
     pick(&mut window, "Unblind the study");
     read(&mut window, "Unblinded by A. Person at ");
     assert!(shows(&window, ": Zebra") && shows(&window, ": Wildebeest"));
@@ -382,13 +385,13 @@ fn a_closed_window_ends_its_trial_and_writes_no_figures_of_it() {
     let summary = folder.path().join("summary.json");
     let mut window = console(folder.path(), Options { summary: Some(summary.clone()), ..Options::default() });
     open(&mut window);
-    begin(&mut window, "Begin the trial");
+    begin(&mut window, "Start the trial");
     window.state_mut().on_exit(None);
     assert!(journal(&place).lines().last().unwrap().contains("the console was closed"));
     assert!(!summary.exists(), "it has the errors of the modes");
 }
 
-/// Completes the next trial of this participant in so many seconds.
+/// Completes the next trial of this participant in this time.
 fn complete(study: &mut Study, participant: &str, seconds: u32) {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
     scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
@@ -413,7 +416,7 @@ fn the_learning_of_the_chosen_participant_is_drawn_by_practice_and_trials() {
     drop(study);
     let mut window = console(folder.path(), Options::default());
     open(&mut window);
-    read(&mut window, "Learning of P01: 2 trials of practice, 3 trials completed");
+    read(&mut window, "Learning of P01: 2 practice trials, 3 trials completed");
     pick(&mut window, "P02");
-    read(&mut window, "No trial was completed yet");
+    read(&mut window, "No trial completed yet");
 }

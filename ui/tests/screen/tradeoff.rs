@@ -19,7 +19,7 @@ fn nima(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nima")).args(["study", "tradeoff"]).args(arguments).output().unwrap()
 }
 
-/// A recording of a hand that presses a soft spring twice a second, at 500 Hz, as a lever would give it.
+/// A recording of a hand that presses a soft spring twice per second, at 500 Hz, as a lever would give it.
 fn recording(folder: &Path, rows: usize) -> PathBuf {
     let mut text = String::from("t_s,angle,torque\n");
     for i in 0..rows {
@@ -108,14 +108,14 @@ fn bad_input_is_refused_in_one_line() {
     }
 }
 
-/// In free motion, if nothing rests there, a mode with degrees is on the front (degree 1 costs little); in contact none is.
+/// In free motion a mode with degrees is on the front (degree 1 costs little); in contact none is.
 fn console() -> Console {
     let mut plan = plan("free_motion");
     plan.rig.identification.rest_n = 0.0;
     let mut harness = shown(&plan, [1600.0, 2400.0], |app| app);
     until(&mut harness, "engaged", |tick| tick.state == LoopState::Engaged);
     harness.run_steps(3);
-    // Its tile lies behind others.
+    // Its tile is behind others.
     pick(&mut harness, Panel::Tradeoff.title());
     harness
 }
@@ -134,8 +134,8 @@ fn a_measurement_can_be_cancelled() {
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged, "the loop went on");
 }
 
-/// Clicks a point with a degree that the running loop cannot change to, and returns its degree. Which points the front has is
-/// a matter of measured times.
+/// Clicks a point with a degree that the running loop cannot change to, and returns its degree. Measured times decide which
+/// points are on the front.
 fn choose_another(harness: &Console) -> usize {
     let points = harness.get_all_by_label_contains(", N = ");
     let another = |label: &str| !label.contains("N = 5, 300 ms");
@@ -153,7 +153,7 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     harness.step();
     harness.check_accessibility();
     harness.get_by_label_contains("Trade-off plot:");
-    // The cheapest of all is direct reflection: the running loop takes it over.
+    // The fastest of all is direct reflection: the running loop changes to it.
     harness
         .get_by(|node| node.role() == Role::Button && node.label().is_some_and(|l| l.starts_with("Direct (DFR): ")))
         .click_accesskit();
@@ -161,7 +161,7 @@ fn a_measured_point_is_applied_and_a_restart_comes_back_idle() {
     pick(&mut harness, "Apply");
     until(&mut harness, "direct", |tick| tick.mode == nima_core::impedance::Mode::Dfr);
     assert_eq!(harness.state().tick().unwrap().state, LoopState::Engaged);
-    // Another degree or window: the loop is built anew and waits for the operator.
+    // Another degree or window: the loop is restarted and waits for the operator.
     let degree = choose_another(&harness);
     harness.step();
     pick(&mut harness, "Apply");

@@ -1,4 +1,4 @@
-//! Training tasks in the window: marking lumps, and what the view tells of a trial.
+//! Training tasks in the window: marking lumps, and the texts about a trial.
 
 use egui::Key;
 use egui_kittest::{Harness, kittest::Queryable as _};
@@ -24,7 +24,7 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
     harness.key_press(Key::X);
     press(&mut harness, "Drive by mouse (M)");
     until(&mut harness, "led", |tick| tick.guide_m.is_some());
-    read(&mut harness, "Places marked: 0 (X marks, D ends the trial, N begins it anew)");
+    read(&mut harness, "Places marked: 0 (X marks, D ends the trial, N restarts it)");
     for marked in 1..=2 {
         harness.key_press(Key::X);
         read(&mut harness, &format!("Places marked: {marked}"));
@@ -40,7 +40,7 @@ fn lumps_are_marked_by_a_key_while_the_instrument_is_led_and_told_at_the_end() {
 #[test]
 fn the_way_along_the_wire_is_told_and_the_looks_are_switched() {
     let mut harness = console_of("wire", SIZE, |app| app);
-    read(&mut harness, "Way to the goal: ");
+    read(&mut harness, "Path to the goal: ");
     assert_eq!(harness.state().extras(), Extras::default());
     press(&mut harness, SHOW.get());
     for switch in [SHADOWS, DEPTH, ROUND] {
@@ -53,7 +53,7 @@ fn the_way_along_the_wire_is_told_and_the_looks_are_switched() {
 
 type Window<'a> = Harness<'a, ConsoleApp>;
 
-/// Which jaws are open.
+/// Whether each pair of jaws is open.
 fn open(window: &Window<'_>) -> [bool; SIDES] {
     let jaws = window.state().objects().map_or([None; SIDES], |objects| objects.jaws);
     jaws.map(|jaws| jaws.is_some_and(|jaws| jaws.opening_rad > 0.4))
@@ -71,7 +71,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     read(&mut harness, "Right instrument");
     let right_m = |harness: &Window<'_>| harness.state().tick().unwrap().guide_m.unwrap();
     let before_m = right_m(&harness);
-    // All in one frame: they are done in their order.
+    // All in one frame: they are applied in order.
     for key in [Key::PageDown, Key::PageDown, Key::H, Key::PageUp, Key::G] {
         harness.key_press(key);
     }
@@ -89,7 +89,7 @@ fn one_person_leads_both_instruments_one_at_a_time() {
     until(&mut harness, "let go", |tick| tick.guide_m.is_none());
 }
 
-/// The torque about the shaft at the jaws, mNm, as it is told.
+/// The displayed torque about the shaft at the jaws, mNm.
 fn torque_mnm(window: &Window<'_>) -> Option<f64> {
     let begins = "Torque about the shaft: ";
     let told = texts(window).into_iter().find(|told| told.starts_with(begins))?;
@@ -103,7 +103,7 @@ fn the_torque_about_the_shaft_is_shown_at_the_jaws_and_at_the_wrist() {
     let mut harness = shown_at(2.0, &plan, SIZE, |app| app);
     press(&mut harness, "Left");
     wait(&mut harness, "no torque", |window| torque_mnm(window) == Some(0.0));
-    // A ring weighs 15 mN, its middle is 7 mm beside the jaws, and the shaft leans by 40 degrees.
+    // A ring weighs 15 mN, its centre is 7 mm away from the jaws, and the shaft leans by 40 degrees.
     wait(&mut harness, "the torque of a ring that is carried", |window| {
         let jaws = window.state().objects().and_then(|objects| objects.jaws[Side::Left.index()]);
         let held = jaws.is_some_and(|jaws| jaws.opens_n > 1.0 && !jaws.touched[1] && !jaws.touched[2]);

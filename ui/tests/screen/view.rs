@@ -15,7 +15,7 @@ use crate::bench::{console_of, press, until};
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
-/// The pointer rests here until what it is at has told itself.
+/// Holds the pointer here until the hover text appears.
 fn point_at(harness: &mut Harness<'_, ConsoleApp>, place: Pos2) {
     harness.input_mut().events.push(Event::PointerMoved(place));
     harness.run_steps(20);

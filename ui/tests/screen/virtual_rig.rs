@@ -22,7 +22,7 @@ use nima_machine::{
 use nima_recording::store::utc_now;
 use nima_simulation::{Plan, World, run_virtual, scene::Scene};
 
-/// Samples of a calibration scene, each under the prompt that `session` wants after the one before; ends with `None`.
+/// Samples of a calibration scene, each under the next prompt of `session`; ends with `None`.
 fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSample, f64) -> Option<Prompt>) {
     let mut world = World::new(scene, 1000.0);
     let mut prompt = Prompt::Rest;
@@ -37,7 +37,7 @@ fn calibrate(scene: &Scene, mut session: impl FnMut(&nima_core::frames::WristSam
     panic!("the calibration never ended");
 }
 
-/// Gravity and correspondence of the simulated wrist, taken once by their own sessions.
+/// Gravity and correspondence of the simulated wrist, recorded once by their own sessions.
 pub(crate) fn records() -> &'static (GravityRecord, CorrespondenceRecord) {
     static RECORDS: OnceLock<(GravityRecord, CorrespondenceRecord)> = OnceLock::new();
     RECORDS.get_or_init(|| {
@@ -69,7 +69,7 @@ pub(crate) fn records() -> &'static (GravityRecord, CorrespondenceRecord) {
     })
 }
 
-/// A simulated rig on the virtual clock, in a thread of its own; it goes on only when it is asked to.
+/// A simulated rig on the virtual clock, in a separate thread; it advances only on request.
 pub(crate) struct VirtualRig {
     orders: Sender<(usize, Prompt)>,
     ticks: Receiver<Vec<Tick>>,
@@ -103,7 +103,7 @@ impl VirtualRig {
         Self { orders, ticks }
     }
 
-    /// The ticks that were ordered last; orders so many more under this prompt.
+    /// Returns the ticks of the previous request; requests this many more under this prompt.
     pub(crate) fn go_on(&self, count: usize, prompt: Prompt) -> Vec<Tick> {
         let ticks = self.ticks.recv().unwrap();
         self.orders.send((count, prompt)).unwrap();

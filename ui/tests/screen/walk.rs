@@ -1,5 +1,5 @@
-//! A walk over every view at three sizes, light and dark: no text is cut or lies on another, nothing leaves the window, no two
-//! controls overlap, every control has a name, and the stop is where a hand looks for it.
+//! Checks every view at three sizes, light and dark: no text is cut or overlaps another, nothing leaves the window, no two
+//! controls overlap, every control has a name, and the stop button is in its place.
 
 use std::{env, fmt::Write as _, fs, path::Path, time::Duration};
 
@@ -37,7 +37,7 @@ pub(crate) const VIEWS: [(Role, &[Panel]); 7] = [
     (Role::Demo, &[]),
 ];
 
-/// What is found in each view at each size, dark and light.
+/// Faults in each view at each size, dark and light.
 fn in_each_view(
     harness: &mut Harness<'_, ConsoleApp>,
     find: impl Fn(&mut Harness<'_, ConsoleApp>, Role, [f32; 2]) -> Vec<String>,
@@ -121,7 +121,7 @@ fn nothing_is_cut_or_overlaps_on_the_pages_of_a_study_and_in_a_trial() {
         for size in SIZES {
             for light in [false, true] {
                 harness.state_mut().settings_mut().light = light;
-                // The form scrolls, and on a small screen a questionnaire does: what is scrolled away lies nowhere.
+                // The form scrolls, and on a small screen a questionnaire does: content scrolled out of view has no position.
                 let is_form = page == "form" || page == "questionnaire" && size[1] < 1000.0;
                 let faults = faults(harness, size, if is_form { Page::Form } else { Page::Scrolls });
                 all.extend(faults.into_iter().map(|fault| format!("{page} {size:?} light {light}: {fault}")));
@@ -133,13 +133,13 @@ fn nothing_is_cut_or_overlaps_on_the_pages_of_a_study_and_in_a_trial() {
     look(&mut harness, "list", &mut all);
     bench::pick(&mut harness, "New study");
     look(&mut harness, "form", &mut all);
-    bench::pick(&mut harness, "Make the study");
+    bench::pick(&mut harness, "Create study");
     look(&mut harness, "new study", &mut all);
     bench::pick(&mut harness, "Close the study");
     bench::pick(&mut harness, "Open Touching");
     bench::pick(&mut harness, "a simulated hand");
     look(&mut harness, "study", &mut all);
-    bench::pick(&mut harness, "Begin the trial");
+    bench::pick(&mut harness, "Start the trial");
     bench::wait(&mut harness, "a trial", |harness| harness.state().in_trial());
     until(&mut harness, "idle", |tick| tick.state == LoopState::Idle);
     look(&mut harness, "trial", &mut all);
@@ -171,7 +171,7 @@ fn nothing_is_cut_or_overlaps_in_the_past_and_in_the_list_of_sessions() {
     bench::press(&mut harness, "Open 20261123T131415Z-Simulated-rig.mcap");
     past::until_whole(&mut harness);
     all.extend(in_each_view(&mut harness, |harness, role, size| {
-        // On a small screen the technician's panels scroll more: what is scrolled away lies nowhere.
+        // On a small screen the technician's panels scroll more: content scrolled out of view has no position.
         let is_form = role == Role::Technician && size[1] < 1000.0;
         faults(harness, size, if is_form { Page::Form } else { Page::of_view(role) })
     }));
@@ -223,7 +223,7 @@ fn a_scale_is_used_as_far_as_the_window_has_room() {
     for (size, factor) in [(SIZES[3], 2.0), (SIZES[1], 720.0 / 680.0)] {
         harness.state_mut().settings_mut().scale_percent = 200;
         for _ in 0..4 {
-            // A window's points are its pixels over the factor.
+            // The window's points are its pixels divided by the factor.
             let points = egui::Vec2::from(size) / harness.ctx.zoom_factor();
             harness.set_size(points);
             harness.step();
@@ -242,30 +242,30 @@ fn tour_and_glossary_fit_and_leave_the_stop_alone() {
     };
     let mut harness = begin(path.clone());
     until(&mut harness, "any tick", |_| true);
-    bench::press(&mut harness, "Go on with the simulated rig");
+    bench::press(&mut harness, "Continue with the simulated rig");
     for button in ["Next step", "Next step", "Step back", "Next step", "Next step"] {
         assert!(harness.query_by_role_and_label(accesskit::Role::Button, "Stop").is_some());
         bench::press(&mut harness, button);
     }
     bench::press(&mut harness, "Stop");
     until(&mut harness, "stopped during the tour", |tick| tick.state == LoopState::Stopped);
-    bench::press(&mut harness, "Begin");
-    assert!(harness.query_by_label("Begin").is_none());
+    bench::press(&mut harness, "Start");
+    assert!(harness.query_by_label("Start").is_none());
     harness.key_press(egui::Key::F4);
     harness.run_steps(3);
-    let entry = harness.get_by_label("Horizon").rect();
+    let entry = harness.get_by_label("Prediction horizon").rect();
     let stop = harness.get_by_role_and_label(accesskit::Role::Button, "Stop").rect();
     assert!(entry.top() > stop.bottom());
     harness.key_press(egui::Key::F4);
     harness.run_steps(3);
-    assert!(harness.query_by_label("Horizon").is_none());
+    assert!(harness.query_by_label("Prediction horizon").is_none());
     drop(harness);
     let mut again = begin(path);
     again.run_steps(3);
     assert!(again.query_by_label("Next step").is_none(), "the tour is for the first time");
 }
 
-/// Kind and name of everything that can be operated, in the order of the keyboard. Digits are left out, because numbers move.
+/// Kind and name of every control, in keyboard order, without digits, because numbers change.
 fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
     let operated = |kind: accesskit::Role| {
         matches!(
@@ -280,7 +280,7 @@ fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
     for node in harness.get_all_by(move |node| operated(node.role())) {
         let node = node.accesskit_node();
         let name: String = node.label().unwrap_or_default().chars().filter(|letter| !letter.is_ascii_digit()).collect();
-        // An alarm depends on the computer: one without the right to a real-time thread has one.
+        // An alarm depends on the computer: without the right to a real-time thread there is one.
         if !(name.starts_with("All alarms") || name.starts_with("Acknowledge")) {
             writeln!(text, "{:?}: {}", node.role(), name.lines().next().unwrap_or_default()).unwrap();
         }
@@ -288,7 +288,7 @@ fn controls(harness: &Harness<'_, ConsoleApp>) -> String {
     text
 }
 
-/// A control that is lost, renamed or new is seen in a review. `UPDATE_SNAPSHOTS=1` writes the files anew.
+/// A lost, renamed or new control shows up in review. `UPDATE_SNAPSHOTS=1` rewrites the files.
 #[test]
 fn every_view_offers_what_was_agreed() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screen/stored");

@@ -1,4 +1,4 @@
-//! The camera's wizard, walked by accessible names with an emulated endoscope before which a board is held.
+//! The Camera wizard, driven by accessible names, with a board in front of an emulated endoscope.
 
 use std::{
     path::Path,
@@ -25,10 +25,10 @@ use crate::{
     language, picture,
 };
 
-/// A small picture, so that a busy machine keeps up.
+/// A small image, so that a busy machine keeps up.
 const SIZE_PX: [usize; 2] = [640, 360];
 
-/// An emulated endoscope, the board's place before it, and the poses in which a person holds it.
+/// An emulated endoscope, the board in front of it, and the poses in which a person holds it.
 struct Bench {
     _serving: Serving,
     pose: Arc<Mutex<Isometry3<f64>>>,
@@ -57,7 +57,7 @@ impl Bench {
         Self { url: serving.endpoint.clone(), _serving: serving, pose, poses }
     }
 
-    /// The board is held at another place.
+    /// Moves the board to another pose.
     fn hold(&mut self, number: u32) {
         *self.pose.lock().unwrap() = (self.poses)(2.2 * f64::from(number) + 0.5);
     }
@@ -88,34 +88,34 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
     until(&mut console, "any tick", |_| true);
     read(&mut console, "Picture: fine");
     pick(&mut console, "Next");
-    read(&mut console, "Hold the board straight before the lens");
+    read(&mut console, "Hold the board straight in front of the lens");
     assert!(!can_press(&console, "Next"), "there are no views yet");
     for number in 0..18 {
         bench.hold(number);
         read(&mut console, &format!("{} taken;", number + 1));
     }
-    read(&mut console, "All views are taken");
+    read(&mut console, "All views captured");
     language::fits(&mut console, "views");
     pick(&mut console, "Remove the last view");
     read(&mut console, "18 taken;");
     pick(&mut console, "Next");
-    read(&mut console, "Accepted: it predicts views that were left out");
+    read(&mut console, "Accepted: it predicts held-out views");
     language::fits(&mut console, "lens");
     picture::same(&console, "wizard-camera-lens");
     pick(&mut console, "Next");
-    // The board lies still, but the tip stays where it is: that is no place.
+    // The board is at rest, but the tip does not move between corners: no pose results.
     for touched in 0..4 {
         read(&mut console, "Touch the marked corner with the tip");
-        pick(&mut console, "Tip is at it");
+        pick(&mut console, "Tip is on the corner");
         read(&mut console, &format!("{} corners touched", touched + 1));
     }
-    read(&mut console, "beside the board");
+    read(&mut console, "off the board");
     language::fits(&mut console, "place");
     assert!(!can_press(&console, "Next"));
-    pick(&mut console, "Lay it anew");
+    pick(&mut console, "Reposition the board");
     read(&mut console, "0 corners touched");
     pick(&mut console, "Next");
-    read(&mut console, "the place is not known");
+    read(&mut console, "position unknown");
     language::fits(&mut console, "save");
     picture::same(&console, "wizard-camera-save");
     assert!(
@@ -130,8 +130,8 @@ fn a_technician_finds_the_lens_from_live_views_saves_it_and_undoes_it() {
         assert!((found - real).abs() < 0.005 * FOCAL_PX, "{found} {real}");
     }
     assert_eq!((camera.size_px, camera.position_m), (SIZE_PX, None));
-    pick(&mut console, "Put the values of before back");
-    read(&mut console, "The values of before are in the rig file again");
+    pick(&mut console, "Restore previous values");
+    read(&mut console, "The previous values are in the rig file again");
     assert!(RigConfig::load(&rig).unwrap().endoscope.unwrap().camera.is_none());
 }
 
@@ -141,6 +141,6 @@ fn without_a_picture_the_wizard_says_what_it_needs() {
     let bench = Bench { url: "http://127.0.0.1:1/".to_owned(), ..Bench::new() };
     let (mut console, _) = bench.console(folder.path(), [1280.0, 720.0]);
     until(&mut console, "any tick", |_| true);
-    read(&mut console, "no picture has come");
+    read(&mut console, "no image received");
     assert!(!can_press(&console, "Next"));
 }

@@ -1,4 +1,4 @@
-//! The correspondence wizard walked by accessible names on a real running loop, with a simulated person who pushes.
+//! The correspondence wizard driven by accessible names on a real running loop, with a simulated person who pushes.
 
 use std::{
     path::Path,
@@ -75,7 +75,7 @@ fn nine_pushes_as_asked_end_in_a_saved_correspondence_and_more_may_follow() {
     assert!(off_deg < 0.5, "{off_deg} degrees off");
     let lines = harness.state().in_force().lines();
     assert!(lines.iter().any(|line| line.starts_with("Correspondence: 2") && line.contains("pushes")), "{lines:?}");
-    // Saving started the loop, and with it its clock, anew: the pushes go on where they were.
+    // Saving restarted the loop and its clock: the pushes continue.
     pick(&mut harness, "Back");
     pick(&mut harness, "Back");
     read(&mut harness, &format!("Pushes: {} recorded of 9", record.pairs + 1));
@@ -112,7 +112,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     read(&mut harness, "Insufficient motion");
     read(&mut harness, "along one line");
     pick(&mut harness, "Next");
-    let button = "Save in spite of the verdict";
+    let button = "Save despite the verdict";
     assert!(!can_press(&harness, button) && harness.query_by_label("Save and use").is_none());
     for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
         write_into(&mut harness, label, text);
@@ -123,7 +123,7 @@ fn pushes_along_one_line_are_kept_only_under_a_name() {
     assert_eq!(record.judgement.verdict, Verdict::InsufficientMotion);
     assert_eq!(record.judgement.override_by.as_deref(), Some("A. Technician"));
     let lines = harness.state().in_force().lines();
-    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, accepted by A. Technician")), "{lines:?}");
 }
 
 #[test]

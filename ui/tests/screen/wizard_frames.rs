@@ -1,4 +1,4 @@
-//! The frame wizards, walked by accessible names over the wires of an emulated rig whose rig file is wrong.
+//! The frame wizards, driven by accessible names over the interfaces of an emulated rig whose rig file is wrong.
 #![cfg(target_os = "linux")]
 
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::{
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
 
-/// The built-in emulated rig as a file with the places of these devices, and with another shaft.
+/// The built-in emulated rig as a file with the addresses of these devices, and with another shaft.
 fn rig_file(folder: &Path, devices: &Settings) -> String {
     let mut file = RigFile::of("emulated").unwrap();
     let mut put = |key: &str, value: &dyn std::fmt::Display| file.set(&format!("devices.{key}"), value.to_string());
@@ -45,7 +45,7 @@ fn rig_file(folder: &Path, devices: &Settings) -> String {
     }
     let tools = &devices.tracker.as_ref().unwrap().tools;
     assert!(file.set_text("devices.tracker.tools", &format!("{tools:?}")));
-    // The instrument was exchanged for a longer one, and nobody has told the rig file.
+    // The instrument was replaced by a longer one, and the rig file was not updated.
     let shaft_m = devices.right.as_ref().unwrap().mount.shaft_m - 0.006;
     file.set("devices.right.mount.shaft_m", shaft_m);
     let path = folder.join("theatre.toml");
@@ -53,7 +53,7 @@ fn rig_file(folder: &Path, devices: &Settings) -> String {
     path.display().to_string()
 }
 
-/// The console on the emulated wires, and the emulators.
+/// The console on the emulated interfaces, and the emulators.
 pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     let devices = elsewhere(folder);
     let emulators = started(&devices);
@@ -76,7 +76,7 @@ pub(crate) fn console(folder: &Path) -> (Console, EmulatedRig, String) {
     (console, emulators, name)
 }
 
-/// Steps the window until it is as wanted; a machine that is too busy for that is not judged.
+/// Steps the window until the condition holds; a machine that is too busy is not judged.
 fn until(console: &mut Console, what: &str, wanted: impl Fn(&Console) -> bool) {
     if !comes(console, TIMEOUT, wanted) {
         println!("never: {what}; there is: {:?}", texts(console));
@@ -123,8 +123,8 @@ fn a_technician_finds_the_tip_sees_the_change_saves_it_and_undoes_it() {
         assert!(RigFile::of(&rig).unwrap().text().contains("# The mirror image."), "comments stay");
         let now = console.state().rig().devices.as_ref().unwrap().right.as_ref().unwrap().mount.shaft_m;
         assert!((now - found_m).abs() < 1e-12, "the loop runs with it");
-        press(&mut console, "Put the values of before back");
-        until(&mut console, "undone", |c| shows(c, "The values of before are in the rig file again"));
+        press(&mut console, "Restore previous values");
+        until(&mut console, "undone", |c| shows(c, "The previous values are in the rig file again"));
         assert!((shaft_m(&rig) - wrong_m).abs() < 1e-12);
         press(&mut console, "Next: Right arm, hand-eye");
         assert!(shows(&console, "turn its marker towards the tracker"));

@@ -1,4 +1,4 @@
-//! The gravity wizard walked from its first to its last step by accessible names, with good data and with bad.
+//! The gravity wizard from its first to its last step by accessible names, with good data and with bad.
 
 use std::{
     path::Path,
@@ -31,7 +31,7 @@ fn gravity_scene(flaw: Option<Flaw>) -> Scene {
     scene
 }
 
-/// Goes on from the checks to the poses. On a busy computer a check may fail again between the look at the button and the
+/// Continues from the checks to the poses. On a busy computer a check may fail again between the test of the button and the
 /// click, which then does nothing.
 fn leave_the_checks(console: &mut Console) {
     let began = Instant::now();
@@ -56,13 +56,13 @@ fn a_technician_walks_from_an_uncalibrated_wrist_to_a_force_that_is_known() {
     let mut console = console(Scene::load("palpation").unwrap(), folder.path());
     wait(&mut console, "an unknown force", |c| shows(c, "the wrist sensor is not calibrated"));
     pick(&mut console, "Calibrate gravity…");
-    wait(&mut console, "the first step", |c| shows(c, "let go of it: nothing may touch the tool"));
+    wait(&mut console, "the first step", |c| shows(c, "release it: nothing may touch the tool"));
     assert!(!can_press(&console, "Engage"), "nobody engages an arm that is being guided by hand");
     language::fits(&mut console, "checks before the poses");
     leave_the_checks(&mut console);
     wait(&mut console, "some poses", |c| shows(c, "4 of 12 recorded"));
     language::fits(&mut console, "poses");
-    // Back and closing lose nothing that was good.
+    // Back and closing lose no good data.
     pick(&mut console, "Back");
     pick(&mut console, "Back to the monitor");
     wait(&mut console, "the monitor", |c| shows(c, "Calibrate gravity…") && c.state().tick().is_some());
@@ -98,7 +98,7 @@ fn a_hand_on_the_tool_is_told_and_cannot_be_saved_without_a_name() {
     let mut console = console(gravity_scene(Some(Flaw::Touches)), folder.path());
     pick(&mut console, "Calibrate gravity…");
     leave_the_checks(&mut console);
-    // While it is touched, or afterwards for who looked away.
+    // While it is touched, or afterwards.
     let told = ["something touches it", "something touches the tool", "Something touched the tool"];
     wait(&mut console, "the touch", |c| told.iter().any(|words| shows(c, words)));
     assert_eq!(files(folder.path()), 0);
@@ -133,14 +133,14 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     wait(&mut console, "enough poses", |c| shows(c, "8 of 12 recorded"));
     pick(&mut console, "Next");
     wait(&mut console, "the verdict", |c| shows(c, "Poor data") && shows(c, "sign"));
-    // The switch cures it without a new pose; and back again.
+    // The switch fixes it without a new pose; and back again.
     for verdict in ["Accepted", "Poor data"] {
         pick(&mut console, "Back");
         pick(&mut console, "Back");
         let by_arm = console.query_all_by_label_contains("Take the orientation from the arm").next().unwrap();
         assert!(by_arm.accesskit_node().is_disabled(), "what is in the poses cannot be changed");
         console.query_all_by_label_contains("points down at rest").next().unwrap().click();
-        // The sensor is looked at anew: the way on is shut until then, from the second frame on.
+        // The sensor is checked again: the next step is disabled until then, from the second frame on.
         console.step();
         console.step();
         assert!(!can_press(&console, "Next"));
@@ -152,15 +152,15 @@ fn a_wrong_sign_is_named_and_an_override_is_written_into_the_file() {
     wait(&mut console, "a reading", |c| shows(c, "Not passed yet"));
     pick(&mut console, "Next");
     wait(&mut console, "the last step", |c| shows(c, "not proven"));
-    assert!(!can_press(&console, "Save in spite of the verdict"), "a name and a reason come first");
+    assert!(!can_press(&console, "Save despite the verdict"), "a name and a reason come first");
     write_into(&mut console, "Your name", "Ada Lovelace");
     write_into(&mut console, "Reason", "bench test");
-    pick(&mut console, "Save in spite of the verdict");
+    pick(&mut console, "Save despite the verdict");
     wait(&mut console, "saved", |c| shows(c, "Saved and in use"));
     let path = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.contains("Ada Lovelace") && text.contains("bench test"), "{text}");
-    wait(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, kept by Ada Lovelace"));
+    wait(&mut console, "who kept it", |c| shows(c, "NOT PROVEN, accepted by Ada Lovelace"));
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn a_sensor_without_an_accelerometer_uses_the_orientation_of_the_arm() {
     scene.wrist.as_mut().unwrap().imu = None;
     let mut console = console(scene, folder.path());
     pick(&mut console, "Calibrate gravity…");
-    wait(&mut console, "the cure", |c| shows(c, "take the orientation from the arm"));
+    wait(&mut console, "the remedy", |c| shows(c, "use the arm's orientation"));
     assert!(!can_press(&console, "Next"));
     console.query_all_by_label_contains("Take the orientation from the arm, not").next().unwrap().click();
     console.step();
@@ -203,7 +203,7 @@ fn the_left_arm_is_calibrated_by_itself_and_keeps_nothing_of_the_right_one() {
     wait(&mut console, "a pose of the left arm", |c| shows(c, "1 of 12 recorded"));
     assert_eq!(console.state().tick().map(|tick| tick.prompt), Some(Prompt::Rest), "nobody asks at the right arm");
     pick(&mut console, "Right arm");
-    wait(&mut console, "the first step anew", |c| shows(c, "let go of it: nothing may touch the tool"));
+    wait(&mut console, "the first step anew", |c| shows(c, "release it: nothing may touch the tool"));
     leave_the_checks(&mut console);
     assert!(shows(&console, "0 of 12 recorded"), "poses of the left arm");
     wait(&mut console, "a pose of the right arm", |c| shows(c, "1 of 12 recorded"));

@@ -1,4 +1,5 @@
-//! The tip-force wizard walked by accessible names, fed by a simulated rig on the virtual clock: minutes of work take seconds.
+//! The tip-force wizard driven by accessible names, with data from a simulated rig on the virtual clock: minutes of work take
+//! seconds.
 
 use std::{
     path::{Path, PathBuf},
@@ -38,10 +39,10 @@ use crate::{
     virtual_rig::{VirtualRig, records},
 };
 
-/// Ticks of the virtual clock between two pictures of the window.
+/// Ticks of the virtual clock between two frames of the window.
 const TICKS: usize = 250;
 
-/// A window with nothing but the wizard.
+/// A window with only the wizard.
 struct Bench {
     wizards: Wizards,
     binding: Binding,
@@ -89,7 +90,7 @@ impl Console {
         Self { rig: VirtualRig::start(scene, calibrations), window }
     }
 
-    /// The rig works on for a moment, then the window is drawn.
+    /// Advances the rig for a moment, then draws the window.
     fn step(&mut self) {
         let wizards = &mut self.window.state_mut().wizards;
         let ticks = self.rig.go_on(TICKS, wizards.prompt());
@@ -134,7 +135,7 @@ impl Console {
         self.step();
     }
 
-    /// As the label of the bar says.
+    /// The number in the label of the bar.
     fn rows(&self) -> usize {
         let label = self.window.get_by_label_contains(" s (paper: ").accesskit_node().label().unwrap();
         label.trim_start_matches("Rows: ").split(',').next().unwrap().parse().unwrap()
@@ -164,7 +165,7 @@ fn model_path(folder: &Path) -> PathBuf {
     Store::open(folder).path_of("tip-force", &records().0.head.sensor, "safetensors").unwrap()
 }
 
-/// The real console on a running loop, with what the wizard has.
+/// The real console on a running loop, with the data of the wizards.
 fn real_console(wizards: Wizards, folder: &Path) -> Harness<'static, ConsoleApp> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
@@ -190,7 +191,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     console.press("Next");
     console.press("Small (16)");
     console.press("Start training");
-    // Looking elsewhere does not end it.
+    // Another page does not end it.
     console.press("Back");
     assert!(console.shows("All goals are met"));
     console.press("Next");
@@ -226,7 +227,7 @@ fn from_an_empty_recording_to_a_network_that_answers_in_the_loop() {
     answers_in_the_loop(folder.path());
 }
 
-/// On the virtual clock the network that was kept answers, and errs less than the wrist force does.
+/// On the virtual clock the accepted network is used, with a smaller error than the wrist force.
 fn answers_in_the_loop(folder: &Path) {
     let rig = RigConfig::load("simulated").unwrap();
     let mut scene = Scene::load("isolation").unwrap();
@@ -273,7 +274,7 @@ fn without_a_correspondence_nothing_can_be_recorded() {
     let mut real = real_console(Wizards::default(), folder.path());
     pick(&mut real, "Calibrate tip force…");
     wait(&mut real, "the reason", |window| {
-        window.query_by_label_contains("The correspondence is not known: calibrate it first").is_some()
+        window.query_by_label_contains("The correspondence is unknown: calibrate it first").is_some()
             && window.query_by_label_contains("Correspondence: not known; press").is_some()
             && window.query_by_label_contains("Gravity: fine").is_some()
     });
@@ -303,7 +304,7 @@ fn work_in_one_place_never_meets_the_goals_and_its_network_needs_a_name() {
     console.read("Verdict: ");
     assert!(!console.shows("Accepted"));
     console.press("Next");
-    assert!(!console.is_ready("Save in spite of the verdict") && !console.shows("Save and use"));
+    assert!(!console.is_ready("Save despite the verdict") && !console.shows("Save and use"));
 }
 
 #[test]
@@ -320,18 +321,18 @@ fn sensors_that_do_not_agree_are_refused_and_an_override_is_written_into_the_fil
     console.read("Verdict: ");
     assert!(console.shows("Poor data"), "{:?}", texts(&console.window));
     console.press("Next");
-    assert!(!console.is_ready("Save in spite of the verdict"), "a name and a reason come first");
+    assert!(!console.is_ready("Save despite the verdict"), "a name and a reason come first");
     for (label, text) in [("Your name", "A. Technician"), ("Reason", "practice")] {
         write_into(&mut console.window, label, text);
     }
-    console.press("Save in spite of the verdict");
+    console.press("Save despite the verdict");
     let saving = console.window.state_mut().saving.take().unwrap();
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("isolation").unwrap();
     let mut in_force = InForce::load(Some(folder.path()), &rig, &scene);
     in_force.save(saving).unwrap();
     let lines = in_force.lines();
-    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, kept by A. Technician")), "{lines:?}");
+    assert!(lines.iter().any(|line| line.contains("NOT PROVEN, accepted by A. Technician")), "{lines:?}");
     let wrist = rig.simulated_wrist(Side::Right).unwrap();
     let store = Store::open(folder.path());
     let kept = kept_model(&store, &wrist.serial_number, &wrist.tool, SystemTime::now()).unwrap().unwrap();
@@ -363,13 +364,13 @@ fn a_cancelled_training_and_steps_back_keep_the_recording() {
     console.press("Back");
     assert_eq!(console.rows(), rows);
     assert_eq!(rows_of(folder.path(), "tip-force-data"), Some(rows), "it is on disk too");
-    console.press("Go on recording");
+    console.press("Resume recording");
     console.record(rows + 300);
     let rows = console.rows();
     console.look_away();
     assert_eq!(console.rows(), rows, "nobody watched, and nothing is lost");
     assert!(console.shows("Paused: press"), "what happened meanwhile is not known: it goes on when asked to");
-    console.press("Go on recording");
+    console.press("Resume recording");
     console.read("setting the sensor under the tissue to zero");
     console.record(rows + 300);
     console.press("Start over");

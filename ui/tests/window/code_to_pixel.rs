@@ -1,5 +1,5 @@
-//! How old the endoscope's picture is when it stands on the screen: the time code is read from the X server's own memory, and what showing and
-//! recording it costs the loop.
+//! Age of the endoscope image on the screen: the time code is read from the X server's memory; and the cost of showing and
+//! recording it for the loop.
 #![cfg(target_os = "linux")]
 use std::{
     fs::File,
@@ -15,18 +15,18 @@ use nima_endoscope::time_code;
 
 use crate::{console::Console, server::Xvfb};
 
-/// Side of the squares in the picture as it comes, px, and its size.
+/// Side of the squares in the camera image, px, and its size.
 const SQUARE_PX: usize = 16;
 const PICTURE_PX: [f64; 2] = [1280.0, 720.0];
-/// What stands above and below the picture in the surgeon's view, points.
+/// Height above and below the image in the Surgeon view, points.
 const ABOVE: f64 = 72.0;
 const BELOW: f64 = 176.0;
-/// The picture may be so much lower, because an alarm stands above it, points.
+/// Maximum shift of the image by the strip of an alarm above it, points.
 const LOWER_MOST: usize = 90;
-/// The button Engage is this far from the right edge, points.
+/// Distance of the button Engage from the right edge, points.
 const ENGAGE_FROM_RIGHT: i32 = 220;
 const LOOK_EVERY: Duration = Duration::from_millis(1);
-/// A picture that is not followed by another one for so long is a stall.
+/// An image without a successor for this time is a stall.
 const STALL: Duration = Duration::from_millis(500);
 
 /// The memory in which the X server keeps the screen (the format of `xwd`).
@@ -56,7 +56,7 @@ impl Screen {
         bytes
     }
 
-    /// The time code of the picture, if it stands so much lower than usual.
+    /// The time code of the image, at this shift.
     fn code_us(&self, lower: usize) -> Option<u64> {
         let [width, height] = self.size_px.map(|side| side as f64);
         let top = ABOVE + lower as f64;
@@ -74,7 +74,7 @@ impl Screen {
     }
 }
 
-/// The emulated endoscope in a process of its own, which ends with this.
+/// The emulated endoscope in a separate process, which ends with this.
 struct Camera {
     process: Child,
     url: String,
@@ -106,10 +106,10 @@ fn now_us() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64
 }
 
-/// What was seen of the pictures.
+/// Observed images.
 #[derive(Debug, Default)]
 struct Seen {
-    /// Age of each when it was first seen, ms.
+    /// Age of each image when it was first seen, ms.
     ages_ms: Vec<f64>,
     stalls: usize,
     longest: Duration,
@@ -158,7 +158,7 @@ impl Seen {
     }
 }
 
-/// Runs the simulated rig in the surgeon's view; `endoscope` stands in its rig file.
+/// Runs the simulated rig in the Surgeon view, with `endoscope` in its rig file.
 fn run(size: &str, endoscope: &str, time: Duration) -> (Seen, serde_json::Value) {
     let folder = tempfile::tempdir().unwrap();
     let memory = tempfile::tempdir().unwrap();
@@ -175,7 +175,7 @@ fn run(size: &str, endoscope: &str, time: Duration) -> (Seen, serde_json::Value)
         .status();
     assert!(moved.unwrap().success());
     thread::sleep(Duration::from_secs(1));
-    // A rig file waits for a person.
+    // A rig file does not engage automatically.
     console.click((width.parse::<i32>().unwrap() - ENGAGE_FROM_RIGHT, 36));
     thread::sleep(Duration::from_secs(3));
     let seen = Seen::watch(&Screen::open(memory.path()), time);
@@ -196,7 +196,7 @@ fn seconds() -> Duration {
     Duration::from_secs(told.unwrap_or(20))
 }
 
-/// Prints the age of the picture on the screen.
+/// Prints the age of the image on the screen.
 #[test]
 #[ignore = "figures: cargo test -p nima-console --test window figures_of_code_to_pixel -- --ignored --nocapture"]
 fn figures_of_code_to_pixel() {
@@ -211,7 +211,7 @@ fn figures_of_code_to_pixel() {
     }
 }
 
-/// Prints the loop's figures without a picture, with it, and with it recorded too, in turn.
+/// Prints the loop's results without an image, with it, and with recording, in turn.
 #[test]
 #[ignore = "figures: cargo test -p nima-console --test window figures_of_the_loop_beside_the_picture -- --ignored --nocapture"]
 fn figures_of_the_loop_beside_the_picture() {

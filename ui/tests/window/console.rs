@@ -1,4 +1,4 @@
-//! The console in a real window, and a hand at its mouse and keyboard.
+//! The console in a real window, with simulated mouse and keyboard.
 
 use std::{
     path::Path,
@@ -31,8 +31,7 @@ impl<'a> Console<'a> {
         let console = Self { x, folder, process };
         wait_until("the window", || x.window_is_open());
         thread::sleep(Duration::from_millis(1500));
-        // No window manager gives the keyboard to the window.
-        // On a busy machine it cannot take it at once.
+        // Without a window manager the window does not get the keyboard. On a busy machine it cannot take it at once.
         let focus = ["search", "--name", "NIMA Console", "windowfocus"];
         wait_until("the focus", || console.x.command("xdotool").args(focus).status().unwrap().success());
         thread::sleep(Duration::from_millis(500));
@@ -56,7 +55,7 @@ impl<'a> Console<'a> {
         self.tool(&["key", key]);
     }
 
-    /// Presses, moves in steps as a hand does, and lets go.
+    /// Presses, moves in steps as a hand does, and releases.
     pub(crate) fn drag(&self, from: (i32, i32), to: (i32, i32)) {
         self.tool(&["mousemove", &from.0.to_string(), &from.1.to_string(), "sleep", "0.2", "mousedown", "1"]);
         for step in 1..=6 {
@@ -66,7 +65,7 @@ impl<'a> Console<'a> {
         self.tool(&["mouseup", "1"]);
     }
 
-    /// Ends the program as a service manager does; gives the loop's figures that it writes.
+    /// Ends the program as a service manager does; returns the loop's results that it writes.
     pub(crate) fn end(&mut self) -> serde_json::Value {
         assert!(self.x.command("kill").args(["-TERM", &self.process.id().to_string()]).status().unwrap().success());
         assert!(self.process.wait().unwrap().success(), "the console closes with success");

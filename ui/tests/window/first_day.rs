@@ -1,5 +1,5 @@
-//! The first day of the paper's rig, emulated, in the real window: from an empty data folder to both arms engaged with the networks in
-//! force. Mouse and keyboard from outside do what a person does who follows the one button that stands out.
+//! The first day of the paper's rig, emulated, in the real window: from an empty data folder to both arms engaged with active
+//! networks. Mouse and keyboard events follow the one button that stands out.
 #![cfg(target_os = "linux")]
 use std::{
     cell::{Cell, RefCell},
@@ -11,18 +11,18 @@ use std::{
 
 use crate::{console::Console, server::Xvfb};
 
-/// Where things stand in a window of 1600 x 1000.
+/// Positions in a window of 1600 x 1000.
 const EMULATED_RIG: (i32, i32) = (270, 268);
 const ENGAGE: (i32, i32) = (1380, 36);
 const NOTHING: (i32, i32) = (1300, 970);
 const WIDTH: usize = 1600;
-/// Colour of the button that stands out (`theme::Palette::primary`), and fewer pixels of it than any such button has.
+/// Colour of the button that stands out (`theme::Palette::primary`), and a number of pixels below that of any such button.
 const NEXT: [u8; 3] = [0x24, 0x62, 0xc8];
 const PIXELS_MIN: usize = 600;
 const CHECKS_MAX: usize = 3;
 /// Points that fail on a machine that is too busy.
 const OF_THE_MACHINE: [&str; 2] = ["Rates and losses of the devices", "Clocks and deadlines"];
-/// A step that nothing follows for so long has failed.
+/// Timeout of a step.
 const PATIENCE: Duration = Duration::from_mins(4);
 
 struct Day<'a> {
@@ -78,7 +78,7 @@ impl<'a> Day<'a> {
         files
     }
 
-    /// The records of the ready checks so far, the newest last.
+    /// The records of the ready checks so far, newest last.
     fn checks(&self) -> Vec<String> {
         self.files("checks").iter().map(|path| std::fs::read_to_string(path).unwrap()).collect()
     }
@@ -87,7 +87,7 @@ impl<'a> Day<'a> {
         self.checks().iter().any(|record| record.contains("passed = true"))
     }
 
-    /// Points of the newest check that failed, other than those which a busy machine fails.
+    /// Failed points of the newest check, except those that a busy machine fails.
     fn wrong(&self) -> Vec<String> {
         let newest = self.checks().pop().unwrap_or_default();
         let failed = newest.split("[[items]]").filter(|item| item.contains("outcome = \"failed\""));
@@ -106,7 +106,7 @@ impl<'a> Day<'a> {
     }
 }
 
-/// What the console recorded of the day, wizards and the ready check in it, is repeated to the last bit.
+/// The recorded session of the day, with wizards and the ready check, is replayed bit by bit.
 fn replays(session: &Path) {
     let replayed = Command::new(env!("CARGO_BIN_EXE_nima")).arg("replay").arg(session).output().unwrap();
     let [told, errors] = [&replayed.stdout, &replayed.stderr].map(|bytes| String::from_utf8_lossy(bytes));
@@ -129,13 +129,13 @@ fn from_an_empty_folder_to_both_arms_engaged() {
         day.click(EMULATED_RIG);
         day.follow("the calibrations", Day::has_all_calibrations);
         println!("calibrated after {:.0} s and {} clicks", began.elapsed().as_secs_f64(), day.clicks.get());
-        // From the last page straight to the ready check and through it: its stop and its releases stand out too. What fails is checked
-        // again, as its cure says; a machine that is too busy for the rates never passes, and is not judged.
+        // From the last page straight to the ready check and through it: its stop and its releases stand out too. A failed
+        // point is repeated, as its remedy says; a machine that is too busy for the rates never passes, and is not judged.
         day.follow("the ready check", |day| day.checks().len() >= CHECKS_MAX || day.is_ready());
         if !day.is_ready() {
             println!("{}", day.checks().join("\n\n"));
             *wrong.borrow_mut() = day.wrong();
-            // What no busy machine explains is no reason to begin the day again.
+            // A failure that a busy machine cannot explain is not repeated.
             if !wrong.borrow().is_empty() {
                 return;
             }

@@ -1,11 +1,11 @@
-//! A recorded session in the real window: what is pressed there does not reach the machine, a stop does.
+//! A recorded session in the real window: controls do not reach the machine, but a stop does.
 #![cfg(target_os = "linux")]
 
 use std::{path::Path, process::Command, thread, time::Duration};
 
 use crate::{console::Console, server::Xvfb};
 
-/// Where things stand in a window of 1600 x 1000 that shows the past.
+/// Positions in a window of 1600 x 1000 during playback.
 const MODE_DFR: (i32, i32) = (235, 177);
 const LOWER_THE_GAIN: (i32, i32) = (100, 300);
 const STEP: (i32, i32) = (1380, 36);

@@ -1,7 +1,7 @@
 //! A person at mouse and keyboard of the real window, who plays with rings.
 //!
-//! The player knows the board and from where the camera looks, and sees the rest: where the tip is by the circle and the line below it, where a
-//! ring lies by its colour, and by a second circle that the jaws hold it.
+//! The player is given the board and the camera pose, and sees the rest: the tip by the circle and the line below it, a ring
+//! by its colour, and a ring in the jaws by a second circle.
 #![cfg(target_os = "linux")]
 use std::{
     path::{Path, PathBuf},
@@ -26,23 +26,23 @@ use crate::{
 
 const WINDOW: [f32; 2] = [1600.0, 1000.0];
 const ENGAGE: (i32, i32) = (1380, 36);
-/// Colours of alarms (`theme::Palette`), and fewer pixels than the frame of one has.
+/// Colours of alarms (`theme::Palette`), and a number of pixels below that of the frame of an alarm.
 const ALARMS: [[u8; 3]; 3] = [[0xff, 0x4d, 0x4d], [0xff, 0xd7, 0x3d], [0x41, 0xd6, 0xe0]];
 const ALARM_PIXELS: usize = 800;
-/// So near to where it was led the tip is there, points; patience of a player who waits for that.
+/// Distance from its target within which the tip has arrived, points, and timeout of a player who waits for it.
 const NEAR: f32 = 3.0;
 const PATIENCE: Duration = Duration::from_secs(12);
 const LOOKS_AGAIN: Duration = Duration::from_secs(2);
-/// From the middle of a ring to that of its tube, m.
+/// From the centre of a ring to the centre of its tube, m.
 const RIM_M: f32 = 0.00725;
-/// Heights of the tip, m: with an empty hand and with a ring above the pegs, above a ring that the other hand holds, at a ring on the board,
-/// and where a ring is let go over its peg.
+/// Heights of the tip, m: with an empty hand and with a ring above the pegs, above a ring in the other hand, at a ring on the
+/// board, and at the release of a ring over its peg.
 const PARKED_M: f32 = 0.060;
 const CARRIED_M: f32 = 0.037;
 const OVER_RING_M: f32 = 0.058;
 const LOW_M: f32 = 0.001;
 const LET_GO_M: f32 = 0.015;
-/// Height of the middle of a ring on the board, m, and how far from its peg's middle a ring's own can be seen, m.
+/// Height of the centre of a ring on the board, m, and maximum distance from its peg's centre at which a ring is seen, m.
 const LIES_M: f32 = 0.00175;
 const AROUND_M: f32 = 0.0135;
 
@@ -51,24 +51,24 @@ pub(crate) struct Player<'a> {
     scene: Scene,
     camera: Camera,
     views: Views,
-    /// The one of them that is on the screen.
+    /// The one that is on the screen.
     view: Rect,
     led: Side,
-    /// Where the tips were led to, m, and where they were dragged to last.
+    /// Target positions of the tips, m, and the last drag positions.
     at_m: [Vector3<f32>; SIDES],
     goal: [Option<[f32; 2]>; SIDES],
-    /// What `xdotool` will do.
+    /// Pending commands for `xdotool`.
     steps: Vec<String>,
 }
 
-/// Where the operating field is in the window, without and with the strip of an alarm above it.
+/// Position of the operating field in the window, without and with the strip of an alarm above it.
 #[derive(Clone, Copy)]
 pub(crate) struct Views {
     calm: Rect,
     alarmed: Rect,
 }
 
-/// The same window without a screen tells where the field is.
+/// The same window without a screen gives the position of the field.
 pub(crate) fn field() -> Views {
     let plan = nima_tests::plan("rings");
     let (handle, objects) = start_watched(&plan, 1.0).unwrap();
@@ -78,7 +78,7 @@ pub(crate) fn field() -> Views {
     window.run_steps(4);
     let calm = window.get_by_label("Operating field").rect();
     window.state_mut().on_exit(None);
-    // A loop that does not run any more is an alarm.
+    // A loop that is no longer running is an alarm.
     let began = Instant::now();
     loop {
         window.run_steps(2);
@@ -145,7 +145,7 @@ impl<'a> Player<'a> {
         self.at_m[self.led.index()]
     }
 
-    /// Where the tip is, which is on its own side: the line below it ends on the board.
+    /// Finds the tip, which is on its own side: the line below it ends on the board.
     fn find_tip(&mut self) {
         let began = Instant::now();
         self.at_m[self.led.index()] = loop {
@@ -167,7 +167,7 @@ impl<'a> Player<'a> {
         };
     }
 
-    /// Notes something to be done by `xdotool`, which [`Self::perform`] does: one process, not dozens.
+    /// Queues commands for `xdotool`, which [`Self::perform`] runs: one process, not dozens.
     fn tool(&mut self, steps: &[&str]) {
         self.steps.extend(steps.iter().map(|step| (*step).to_owned()));
     }
@@ -186,7 +186,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Leads the other instrument.
+    /// Drives the other instrument.
     pub(crate) fn change(&mut self) {
         self.keys("h", 1);
         self.led = self.led.other();
@@ -203,7 +203,7 @@ impl<'a> Player<'a> {
         self.at_m[self.led.index()].z += steps * 1e-3;
     }
 
-    /// Drags the tip to this place, at its height.
+    /// Drags the tip to this position, at its height.
     pub(crate) fn drag(&mut self, [x, y]: [f32; 2]) {
         let at_m = self.at();
         self.goal[self.led.index()] = Some([x, y]);
@@ -212,7 +212,7 @@ impl<'a> Player<'a> {
         if way == Vec2::ZERO {
             return;
         }
-        // Within the view, and not where its buttons are.
+        // Within the view, and away from its buttons.
         let inside = self.view.shrink(60.0);
         let room = Rect::from_min_max(inside.min - way.min(Vec2::ZERO), inside.max - way.max(Vec2::ZERO));
         let press = from.clamp(room.min, room.max).round();
@@ -227,7 +227,7 @@ impl<'a> Player<'a> {
         self.at_m[self.led.index()] = self.level(from + way, at_m.z);
     }
 
-    /// Does what was noted and waits until the tip is where it was led, and holds a ring or not as wanted.
+    /// Performs the queued commands and waits until the tip has arrived, and holds a ring or not as expected.
     pub(crate) fn settle(&mut self, what: &str, holds: bool) {
         self.perform();
         let began = Instant::now();
@@ -253,7 +253,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// A loop that this machine holds up raises an alarm, whose strip moves the field.
+    /// A loop that this machine delays raises an alarm, whose strip moves the field.
     fn sees_alarm(&self) -> bool {
         let strip = Rect::from_min_size(pos2(0.0, 60.0), vec2(WINDOW[0], 70.0));
         self.picture(strip).places(|pixel| ALARMS.contains(&pixel)).len() > ALARM_PIXELS
@@ -269,7 +269,7 @@ impl<'a> Player<'a> {
         self.view = if is_alarmed { self.views.alarmed } else { self.views.calm };
     }
 
-    /// Where a tip is not where it was dragged to, the field has moved meanwhile: the tip is dragged once more.
+    /// If a tip is not at its drag position, the field has moved meanwhile: the tip is dragged once more.
     fn look_again(&mut self) {
         self.find_field();
         let mark = self.picture(self.view).mark();
@@ -281,7 +281,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// For whoever wants to see what went wrong: where `NIMA_PICTURES` says.
+    /// For debugging: saves to the folder in `NIMA_PICTURES`.
     pub(crate) fn keep_picture(&self) {
         if let Some(folder) = std::env::var_os("NIMA_PICTURES") {
             let path = Path::new(&folder).join("playing.png");
@@ -289,7 +289,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// The outer rim of a ring with its middle here, seen from a side.
+    /// The outer rim of a ring with its centre here, seen from a side.
     pub(crate) fn rim(side: Side, [x, y]: [f32; 2]) -> [f32; 2] {
         [if side == Side::Left { x - RIM_M } else { x + RIM_M }, y]
     }
@@ -298,7 +298,7 @@ impl<'a> Player<'a> {
         self.scene.objects.as_ref().unwrap().pegs.at_m[number].map(|m| m as f32)
     }
 
-    /// Where the middle of the ring is that lies around this peg.
+    /// The centre of the ring around this peg.
     fn ring_around(&mut self, peg: [f32; 2]) -> [f32; 2] {
         for _ in 0..4 {
             if let Some(ring) = self.sees_ring(peg) {
@@ -322,7 +322,7 @@ impl<'a> Player<'a> {
         Some([x + ring.center().x, y + ring.center().y])
     }
 
-    /// Takes a ring from its peg: with jaws that are open, from where it is above the pegs.
+    /// Takes a ring from its peg: with open jaws, from above the pegs.
     pub(crate) fn take(&mut self, side: Side, peg: usize) {
         assert_eq!(self.led, side);
         self.perform();
@@ -341,7 +341,7 @@ impl<'a> Player<'a> {
         self.settle("lifted", true);
     }
 
-    /// The other hand waits in the middle with open jaws, and takes over the ring that is brought there.
+    /// The other hand waits in the middle with open jaws, and takes the ring that is brought there.
     fn hand_over(&mut self) {
         self.drag(Self::rim(self.led, [0.0, 0.0]));
         self.settle("in the middle", true);
@@ -368,7 +368,7 @@ impl<'a> Player<'a> {
         self.height(CARRIED_M);
     }
 
-    /// Both hands stand above the middle, with open jaws; the one of this side is led.
+    /// Both hands are above the middle, with open jaws; the one of this side is driven.
     pub(crate) fn get_ready(&mut self, first: Side) {
         for side in [first.other(), first] {
             if self.led != side {
@@ -382,7 +382,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// A ring goes over from a peg to that one on the other side.
+    /// Moves a ring from a peg to another on the other side.
     pub(crate) fn over(&mut self, giver: Side, from: usize, to: usize) {
         if self.led != giver {
             self.change();
@@ -390,14 +390,14 @@ impl<'a> Player<'a> {
         self.take(giver, from);
         self.hand_over();
         self.put(self.peg(to));
-        // Back to where it will take over the next one.
+        // Back to where it will take the next one.
         let taker = giver.other();
         self.height(OVER_RING_M);
         self.drag(Self::rim(taker, [0.0, 0.0]));
         self.settle("back in the middle", false);
     }
 
-    /// The score of the session that was recorded, when the window was closed.
+    /// The score of the recorded session, after the window was closed.
     pub(crate) fn end(mut self) -> serde_json::Value {
         thread::sleep(Duration::from_millis(1200));
         let summary = self.console.end();

@@ -1,5 +1,5 @@
-//! One person with mouse and keyboard plays the peg transfer in the real window: takes each ring with one instrument, hands it over to the other one
-//! in mid-air, and puts it on a peg; or drops it. What is done is judged by the score of the recorded session.
+//! One person with mouse and keyboard plays the peg transfer in the real window: takes each ring with one instrument, passes
+//! it to the other one in mid-air, and puts it on a peg; or drops it. The score of the recorded session is checked.
 #![cfg(target_os = "linux")]
 use std::time::{Duration, Instant};
 
@@ -14,10 +14,10 @@ fn counts(score: &serde_json::Value) -> [Option<f64>; 4] {
     ["transfers", "rings_placed", "drops_in_view", "drops_out_of_view"].map(|key| score[key].as_f64())
 }
 
-/// The pegs of the right side stand in the order of those of the left one.
+/// The pegs of the right side have the same order as those of the left side.
 const ACROSS: usize = 6;
 
-/// These rings go over to the other side and back.
+/// Moves these rings to the other side and back.
 fn over_and_back(player: &mut Player<'_>, rings: &[usize]) {
     player.jaws();
     player.change();
@@ -40,13 +40,13 @@ fn all_six(x: &Xvfb, views: Views) {
     player.keep_picture();
     let score = player.end();
     assert_eq!(counts(&score), [12.0, 12.0, 0.0, 0.0].map(Some), "{score}");
-    // The limit of the task, which a slow machine passes.
+    // The limit of the task, which a slow machine exceeds.
     if began.elapsed() < Duration::from_secs(280) {
         assert!(score["completion_time_s"].as_f64().is_some_and(|time_s| time_s < 300.0), "{score}");
     }
 }
 
-/// One ring goes over and back, a second one is dropped over the board, a third one beside it.
+/// One ring is moved over and back, a second one is dropped over the board, a third one next to it.
 fn one_and_two_drops(x: &Xvfb, views: Views) {
     let mut player = Player::begin(x, views);
     over_and_back(&mut player, &[3]);

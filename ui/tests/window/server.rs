@@ -18,7 +18,7 @@ pub(crate) struct Xvfb {
 }
 
 impl Xvfb {
-    /// `None`, said aloud, where the tools are not installed - unless the environment demands them.
+    /// `None`, with a message, if the tools are not installed, unless the environment requires them.
     pub(crate) fn start() -> Option<Self> {
         Self::of("1600x1000", None)
     }
@@ -31,7 +31,7 @@ impl Xvfb {
             unjudged::left_out("Xvfb, xdotool or ImageMagick is not installed");
             return None;
         }
-        // Without -noreset it begins anew when a window closes, and the next one may come in between.
+        // Without -noreset it restarts when a window closes, and the next window may open in between.
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", &format!("{size}x24"), "-nolisten", "tcp", "-noreset"])
             .args(memory.into_iter().flat_map(|folder| [OsStr::new("-fbdir"), folder.as_os_str()]))
@@ -67,7 +67,7 @@ fn which(tool: &str) -> bool {
     std::env::var_os("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(tool).is_file()))
 }
 
-/// Far longer than anything takes, also on a busy machine.
+/// Far longer than any step takes, even on a busy machine.
 const TIMEOUT: Duration = Duration::from_mins(3);
 
 pub(crate) fn wait_until(what: &str, good: impl Fn() -> bool) {

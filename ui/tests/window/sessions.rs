@@ -1,5 +1,5 @@
-//! One session of each role in the real window, by mouse and keyboard from outside: what a person does must be found in what the program
-//! writes when it ends.
+//! One session of each role in the real window, by simulated mouse and keyboard: the actions must appear in the files that
+//! the program writes at its end.
 #![cfg(target_os = "linux")]
 use std::{path::Path, thread, time::Duration};
 
@@ -12,7 +12,7 @@ use crate::{
     server::Xvfb,
 };
 
-/// Where things stand in a window of 1600 x 1000.
+/// Positions in a window of 1600 x 1000.
 const STOP: (i32, i32) = (1519, 36);
 const STEP: (i32, i32) = (1380, 36);
 const LOWER_THE_GAIN: (i32, i32) = (873, 868);
@@ -28,12 +28,12 @@ fn begin<'a>(x: &'a Xvfb, role: &str) -> Console<'a> {
     Console::begin(x, folder, &["--role", role])
 }
 
-/// Ends the program, when the last action is done; what it wrote: the loop's figures, the settings, and the marks in its sessions.
+/// Ends the program after the last action; returns the loop's results, the settings, and the marks in its sessions.
 fn end(mut console: Console) -> [serde_json::Value; 3] {
     thread::sleep(Duration::from_millis(1200));
     let summary = console.end();
     let settings = read(&console.folder.path().join("console.json"));
-    // Everything is simulated here: only a loop that this machine held up ends in a fault.
+    // Everything is simulated here: only a loop that this machine delays ends in a fault.
     if states(&summary).contains(&"Fault") {
         nima_testing::real_time::too_busy();
     }
@@ -118,7 +118,7 @@ fn each_role_does_its_work_by_mouse_and_keyboard() {
     nima_testing::real_time::judged(|| demo(&x));
 }
 
-/// The states of the loop in a window in which nobody presses anything.
+/// The states of the loop in a window without input.
 fn left_alone(x: &Xvfb, folder: tempfile::TempDir, options: &[&str]) -> serde_json::Value {
     std::fs::write(folder.path().join("console.json"), r#"{"toured":true}"#).unwrap();
     let mut console = Console::begin(x, folder, options);
@@ -130,14 +130,14 @@ fn left_alone(x: &Xvfb, folder: tempfile::TempDir, options: &[&str]) -> serde_js
 fn the_built_in_rig_engages_by_itself_and_a_rig_file_waits_for_a_person() {
     let _alone = nima_testing::real_time::alone();
     let Some(x) = Xvfb::start() else { return };
-    // Beside other work an emulated device is lost now and then.
+    // Under other load an emulated device is lost now and then.
     nima_testing::real_time::judged(|| engages_or_waits(&x));
 }
 
 fn engages_or_waits(x: &Xvfb) {
     let built_in = left_alone(x, tempfile::tempdir().unwrap(), &[]);
     assert!(states(&built_in).contains(&"Engaged"), "{:?}", states(&built_in));
-    // Nothing is missing on it: its sensors at the tips need no calibration.
+    // Nothing is missing: its sensors at the tips need no calibration.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("finished.toml");
     let mut file = emulated::rig_file(&emulated::elsewhere(folder.path()));

@@ -1,8 +1,8 @@
-//! What a player sees: places of colours in a picture of the screen.
+//! Vision of a player: positions of colours in an image of the screen.
 #![cfg(target_os = "linux")]
 use egui::{Pos2, Rect, vec2};
 
-/// Colour of the circle around the tip that is led, and where between it and a double one the width of what is seen lies, points.
+/// Colour of the circle around the driven tip, and the width, points, that separates it from a double circle.
 const MARK: [u8; 3] = [0x9c, 0xe8, 0x7a];
 const MARK_PIXELS: usize = 20;
 const DOUBLE: f32 = 27.0;
@@ -15,7 +15,7 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// Middles of the pixels of such a colour.
+    /// Centres of the pixels of such a colour.
     pub(super) fn places(&self, is_so: impl Fn([u8; 3]) -> bool) -> Vec<Pos2> {
         let pixels = self.rgb.chunks_exact(3).enumerate();
         let wanted = pixels.filter(|(_, pixel)| is_so([pixel[0], pixel[1], pixel[2]]));
@@ -23,7 +23,7 @@ impl Picture {
         wanted.map(|(i, _)| place(i)).collect()
     }
 
-    /// The middle of the circle around the tip, and whether it is double: the jaws hold a ring.
+    /// Centre of the circle around the tip, and whether it is double: the jaws hold a ring.
     pub(super) fn mark(&self) -> Option<(Pos2, bool)> {
         let places = self.places(|pixel| pixel == MARK);
         let around = around(&places).filter(|_| places.len() >= MARK_PIXELS)?;
@@ -31,12 +31,12 @@ impl Picture {
     }
 }
 
-/// The rectangle around these places; `None` if there are none.
+/// The rectangle around these positions; `None` if there are none.
 pub(super) fn around(places: &[Pos2]) -> Option<Rect> {
     (!places.is_empty()).then(|| Rect::from_points(places))
 }
 
-/// A ring that no jaws are near, however it is lit.
+/// A ring away from all jaws, however it is lit.
 pub(super) fn is_of_ring([r, g, b]: [u8; 3]) -> bool {
     let [r, g, b] = [r, g, b].map(i32::from);
     r > g + 25 && g > b + 12

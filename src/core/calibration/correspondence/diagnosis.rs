@@ -9,45 +9,38 @@ use super::solver::Row;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OffsetFrame {
-    /// The wrist sensor's.
     S1,
-    /// The tissue sensor's.
     S2,
-    /// Not known, because the wrist was not turned enough between the pushes; the figures are in the wrist sensor's
-    /// axes.
+    /// Unknown, because the wrist was not turned enough between the pushes; the values are in the wrist sensor's axes.
     Unknown,
 }
 
-/// Gain and offset between the sensors, `f1 = gain R f2 + offset`, with their standard errors; estimated by least
+/// Gain and offset between the two sensors, `f1 = gain R f2 + offset`, with their standard errors; estimated by least
 /// squares together with the rotation, so that the rotation cannot absorb them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Diagnosis {
-    /// Force of the wrist sensor over that of the tissue sensor.
+    /// Force of the wrist sensor divided by the force of the tissue sensor.
     pub gain: f64,
-    /// Standard error of the gain.
     pub gain_se: f64,
-    /// Offset, N.
     pub offset_n: [f64; 3],
-    /// Standard error of the offset's worst axis, N.
     pub offset_se_n: f64,
-    /// In whose axes the offset is given.
+    /// Sensor whose axes the offset refers to.
     pub offset_frame: OffsetFrame,
 }
 
 impl Diagnosis {
-    /// Magnitude of the offset, N.
     pub fn offset_norm_n(&self) -> f64 {
         Vector3::from(self.offset_n).norm()
     }
 
-    /// Whether the gain differs from one by more than `limit`, and by more than three standard errors.
+    /// Returns whether the gain differs from one by more than `limit`, and by more than three standard errors.
     pub fn gain_is_off(&self, limit: f64) -> bool {
         let by = (self.gain - 1.0).abs();
         by > limit && by > 3.0 * self.gain_se
     }
 
-    /// Whether the offset exceeds `limit_n`, and four standard errors.
+    /// Returns whether the offset exceeds `limit_n`, and four standard errors.
     pub fn offset_is_off(&self, limit_n: f64) -> bool {
         let by_n = self.offset_norm_n();
         by_n > limit_n && by_n > 4.0 * self.offset_se_n

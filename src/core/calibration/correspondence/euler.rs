@@ -1,6 +1,6 @@
-//! The paper's solution: a search over roll, pitch and yaw, here with the simplex method of Nelder and Mead (Comput. J.
-//! 1965) from several starts. It has only the residual in common with the closed-form solution, and so can detect an
-//! error in it.
+//! The paper's solution: a search over roll, pitch and yaw, here with the simplex method of Nelder and Mead (Comput.
+//! J. 1965) from several starts. It shares only the residual with the closed-form solution, so it can detect an error in
+//! that solution.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -23,7 +23,7 @@ const FINE: f64 = 1e-9;
 
 type Vertex = (Vector3<f64>, f64);
 
-/// The rotation of least squared residual found by the search.
+/// Returns the rotation with the smallest squared residual that the search finds.
 pub(super) fn search(rows: &[Row]) -> Rotation3<f64> {
     let cost = |angles: &Vector3<f64>| {
         let rotation = rotation(angles);
@@ -39,7 +39,7 @@ pub(super) fn search(rows: &[Row]) -> Rotation3<f64> {
     rotation(&best.0)
 }
 
-/// `Rz(yaw) Ry(pitch) Rx(roll)`, the paper's order.
+/// Returns `Rz(yaw) Ry(pitch) Rx(roll)`, the paper's order.
 fn rotation(angles: &Vector3<f64>) -> Rotation3<f64> {
     Rotation3::from_euler_angles(angles.x, angles.y, angles.z)
 }

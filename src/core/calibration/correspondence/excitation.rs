@@ -1,4 +1,4 @@
-//! Whether the directions of the pushes determine a rotation.
+//! Determines whether the directions of the pushes define a rotation.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::solver::Row;
 
 /// Distribution of the pushes over directions. Ratios are root mean squares along the principal axes of the push
-/// directions (unit vectors, so that strength does not matter); each is the smallest over both sensors and over leaving
-/// out any one fold of the pushes, so that no direction may depend on a single push.
+/// directions (unit vectors, so that strength does not matter); each is the smallest over both sensors and over all
+/// subsets without one fold of the pushes, so that no direction depends on a single push.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Excitation {
     /// Second axis relative to the first: near zero if all pushes lie along one line.
@@ -21,7 +21,7 @@ pub struct Excitation {
 }
 
 impl Excitation {
-    /// For these rows; `folds` are the ranges of rows to leave out in turn.
+    /// Computes the excitation of these rows; `folds` are the ranges of rows to leave out in turn.
     pub(super) fn of(rows: &[Row], folds: &[std::ops::Range<usize>], least_spread: f64) -> Self {
         if rows.is_empty() {
             return Self::default();
@@ -64,7 +64,7 @@ impl Scatter {
         Self { vectors, sum }
     }
 
-    /// Root mean squares along the principal axes, largest first, without these vectors.
+    /// Returns the root mean squares along the principal axes, largest first, without these vectors.
     fn without(&self, left_out: &[Vector3<f64>]) -> [f64; 3] {
         let sum = self.sum - left_out.iter().map(|v| v * v.transpose()).sum::<Matrix3<f64>>();
         let count = (self.vectors.len() - left_out.len()).max(1) as f64;

@@ -1,4 +1,4 @@
-//! From pairs of forces to a report with its verdict.
+//! Fits pairs of forces and returns a report with its verdict.
 
 use std::ops::Range;
 
@@ -12,15 +12,15 @@ use super::{
 };
 use crate::calibration::Verdict;
 
-/// Largest plausible force, N; the squares of larger numbers would lose precision.
+/// Maximum plausible force, N; the squares of larger numbers would lose precision.
 const PLAUSIBLE_N: f64 = 1e4;
 /// Up to this number of pairs each is held out alone; above it, a tenth at a time.
 const ALONE: usize = 20;
-/// With fewer rows the residual of a rotation means nothing.
+/// With fewer rows the residual of a rotation is meaningless.
 const LEAST_SOLVABLE: usize = 3;
 
-/// Fits the rotation between both sensors and judges it. Pairs in the order recorded; a few hundred rows take about a
-/// millisecond. `Err` only for numbers that cannot be forces or rotations; everything else gives a verdict.
+/// Fits the rotation between both sensors and evaluates it. Pairs in the order recorded; a few hundred rows take about
+/// a millisecond. Returns `Err` only for numbers that cannot be forces or rotations; all other data get a verdict.
 ///
 /// # Errors
 /// [`CorrespondenceError`] for a number that cannot be part of a force or rotation, with its pair.
@@ -86,8 +86,8 @@ fn check(pairs: &[Pair]) -> Result<(), CorrespondenceError> {
     Ok(())
 }
 
-/// Ranges to hold out in turn: single rows, or tenths in the order recorded (neighbouring rows of one push are no
-/// independent test).
+/// Returns the ranges to hold out in turn: single rows, or tenths in the order recorded (neighbouring rows of one push
+/// are not an independent test).
 fn folds(rows: usize) -> Vec<Range<usize>> {
     let count = if rows <= ALONE { rows } else { 10 };
     (0..count).map(|fold| fold * rows / count..(fold + 1) * rows / count).collect()
@@ -117,7 +117,8 @@ fn solve(good: &[Row], folds: &[Range<usize>], target: Target) -> Solution {
     }
 }
 
-/// Root mean square angular error from the information of the pushes, `sum [f]x^T [f]x / noise^2`; at most 180.
+/// Returns the root mean square angular error from the information of the pushes, `sum [f]x^T [f]x / noise^2`; at most
+/// 180.
 fn uncertainty_deg(good: &[Row], noise_n: f64) -> f64 {
     let information: Matrix3<f64> =
         good.iter().map(|row| row.s2_n.cross_matrix().transpose() * row.s2_n.cross_matrix()).sum();
@@ -126,8 +127,8 @@ fn uncertainty_deg(good: &[Row], noise_n: f64) -> f64 {
     if variance >= 0.0 { variance.sqrt().to_degrees().min(180.0) } else { 180.0 }
 }
 
-/// A wrong sign or an inverted rotation that explains the pushes at least twice as well as the input does. Only if the
-/// pushes span all three dimensions: in a plane, a change of sign is the same as half a turn.
+/// Returns a wrong sign or an inverted rotation that explains the pushes at least twice as well as the input does.
+/// Valid only if the pushes span all three dimensions: in a plane, a change of sign equals half a turn.
 fn mistaken_input(
     pairs: &[Pair],
     used: &[usize],
@@ -144,10 +145,10 @@ fn mistaken_input(
         consensus(&rows).median_n < 0.5 * median_n
     };
     if better(|pair| Pair { f2_n: -pair.f2_n, ..*pair }) {
-        return Some("the sensors tell opposite forces (action and reaction); change the sign of sensor 2");
+        return Some("the sensors report opposite forces (action and reaction); change the sign of sensor 2");
     }
     if better(|pair| Pair { s1_from_c: pair.s1_from_c.inverse(), ..*pair }) {
-        return Some("the rotations given are the inverse ones (c_from_s1); give s1_from_c");
+        return Some("the given rotations are inverse (c_from_s1); use s1_from_c");
     }
     None
 }
@@ -172,7 +173,7 @@ fn judge(
     }
     if solution.uncertainty_deg > limits.uncertainty_deg {
         let reason = format!(
-            "the pushes determine the rotation only to {:.1} degrees ({} are allowed); push harder, longer or in more directions",
+            "the pushes determine the rotation only to {:.1} degrees (limit {}); push harder, longer or in more directions",
             solution.uncertainty_deg, limits.uncertainty_deg
         );
         return (Verdict::InsufficientMotion, reason);
@@ -191,15 +192,17 @@ fn lack_of_motion(report: &CorrespondenceReport, used: usize, limits: &Limits) -
     if used < limits.least_pairs {
         let needed = limits.least_pairs;
         let least_n = limits.least_force_n;
-        return Some(format!("{used} pushes of at least {least_n} N, {needed} are needed; push more often and harder"));
+        return Some(format!(
+            "only {used} pushes reach {least_n} N, {needed} are required; push more often and harder"
+        ));
     }
     let agree = used - report.outliers.len();
     if agree < limits.least_pairs && share(report.outliers.len(), used) <= limits.outlier_share {
-        return Some(format!("only {agree} pushes agree, {} are needed; push more often", limits.least_pairs));
+        return Some(format!("only {agree} pushes agree, {} are required; push more often", limits.least_pairs));
     }
     match rank {
         0 | 1 => Some(format!("the pushes lie along one line (spread {second:.2}); push in all directions")),
-        2 => Some(format!("the pushes lie in one plane (spread {third:.2}); push out of it too")),
+        2 => Some(format!("the pushes lie in one plane (spread {third:.2}); push in other directions too")),
         _ => {
             let noise_n = report.solution.as_ref()?.noise_n;
             (weakest_n < limits.least_signal * noise_n).then(|| {
@@ -229,15 +232,13 @@ fn disagreement(report: &CorrespondenceReport, solution: &Solution, used: usize,
     let mae_n = worst(&agreement.residuals.held_out.mae);
     if mae_n > limits.held_out_mae_n {
         let most_n = limits.held_out_mae_n;
-        return Some(format!(
-            "the error on held-out pushes is {mae_n:.2} N on the worst axis ({most_n} N are allowed)"
-        ));
+        return Some(format!("the error on held-out pushes is {mae_n:.2} N on the worst axis (limit {most_n} N)"));
     }
     if agreement.r2_held_out_overall < limits.least_r2 {
         let r2 = agreement.r2_held_out_overall;
         let least = limits.least_r2;
         return Some(format!(
-            "the rotation explains only {r2:.2} of the variance of held-out forces ({least} is needed)"
+            "the rotation explains only {r2:.2} of the variance of held-out forces (minimum {least})"
         ));
     }
     let angle_deg = solution.cross_check_deg;
@@ -261,7 +262,7 @@ fn gain_in_words(gain: f64) -> String {
 fn offset_in_words(diagnosis: &Diagnosis) -> String {
     let by_n = diagnosis.offset_norm_n();
     let which = match diagnosis.offset_frame {
-        OffsetFrame::S1 => "sensor 1 was not zeroed, or gravity not taken out of it",
+        OffsetFrame::S1 => "sensor 1 was not zeroed, or its gravity is not compensated",
         OffsetFrame::S2 => "sensor 2 was not zeroed",
         OffsetFrame::Unknown => "one sensor was not zeroed",
     };

@@ -8,8 +8,8 @@
 //! The solver is Wahba's problem by singular values (Markley 1988) with a seeded consensus over pairs of pushes, so
 //! that a quarter of gross outliers does no harm; the paper's search over Euler angles serves as a cross-check. The
 //! verdict is based on residuals of held-out pushes, and on whether the pushes span all three dimensions: pushes along
-//! one line or in one plane are refused. Numbers that are not finite or not plausible are errors; poor data give a
-//! verdict with its reason.
+//! one line or in one plane are refused. Non-finite or implausible numbers are errors; poor data get a verdict with its
+//! reason.
 
 mod diagnosis;
 mod euler;
@@ -35,7 +35,6 @@ pub use record::{CorrespondenceKind, CorrespondenceRecord};
 pub use report::{Agreement, CorrespondenceReport, Solution, Target};
 pub use session::{CorrespondenceSession, Missing, Phase, PushTarget, Refusal, SessionSettings, TARGETS};
 
-/// Measurements of both sensors in one push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Gravity-free force at the wrist, N (`s1`).
@@ -47,7 +46,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// A pair without a chain: the result is then `s1_from_s2`.
+    /// Creates a pair without a chain: the result is then `s1_from_s2`.
     pub fn plain(f1_n: Vector3<f64>, f2_n: Vector3<f64>) -> Self {
         Self { f1_n, f2_n, s1_from_c: UnitQuaternion::identity() }
     }
@@ -56,7 +55,6 @@ impl Pair {
 /// A known correspondence: transforms readings of the sensor under the tissue to the frame of the wrist sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correspondence {
-    /// Which rotation it is.
     pub target: Target,
     /// Rotation from `s2` to the frame that `target` names.
     pub rotation: UnitQuaternion<f64>,
@@ -65,8 +63,8 @@ pub struct Correspondence {
 }
 
 impl Correspondence {
-    /// Force on the tip, N (`s1`), from a reading of the sensor under the tissue, N (`s2`), and this sample; `None` if
-    /// the sample lacks a rotation of the chain.
+    /// Returns the force on the tip, N (`s1`), for a reading of the sensor under the tissue, N (`s2`), and this sample;
+    /// `None` if the sample lacks a rotation of the chain.
     pub fn tip_force_s1(&self, sample: &WristSample, tissue_n: &Vector3<f64>) -> Option<Vector3<f64>> {
         let s1_from_s2 = match self.target {
             Target::CFromS2 => sample.s1_from_c()? * self.rotation,
@@ -77,42 +75,35 @@ impl Correspondence {
     }
 }
 
-/// Settings of a fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
     /// Invert the forces of `s2`: the sensor measures the force on the tissue, not on the instrument.
     pub flip_s2: bool,
-    /// Limits for the verdict.
     pub limits: Limits,
 }
 
-/// Limits for the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Smallest number of usable pushes.
     pub least_pairs: usize,
     /// Pushes weaker than this on either sensor are left out, N.
     pub least_force_n: f64,
-    /// Smallest spread of the push directions along their weakest axis relative to their strongest, with any tenth of
+    /// Minimum spread of the push directions along their weakest axis relative to their strongest, with any tenth of
     /// the pushes left out. 1 is uniform over all directions, 0 a plane; a cone of half angle 25 degrees has 0.22.
     pub least_spread: f64,
-    /// Smallest force along the weakest axis, as a multiple of the residuals' noise, so that noise does not count as a
+    /// Minimum force along the weakest axis, as a multiple of the residuals' noise, so that noise does not count as a
     /// direction.
     pub least_signal: f64,
-    /// Largest expected angular error, degrees.
     pub uncertainty_deg: f64,
-    /// Largest share of outliers.
     pub outlier_share: f64,
-    /// Largest held-out mean absolute error of any axis, N (the paper's worst axis has 0.13).
+    /// Maximum held-out mean absolute error of any axis, N (the paper's worst axis has 0.13).
     pub held_out_mae_n: f64,
-    /// Smallest held-out coefficient of determination over all axes (the paper has 0.95).
+    /// Minimum held-out coefficient of determination over all axes (the paper has 0.95).
     pub least_r2: f64,
-    /// Largest deviation from one of the ratio of both sensors' forces.
+    /// Maximum deviation of the ratio of both sensors' forces from one.
     pub gain_error: f64,
-    /// Largest offset between both sensors, N.
     pub offset_n: f64,
-    /// Largest angle between the results of both solvers, degrees.
+    /// Maximum angle between the results of both solvers, degrees.
     pub cross_check_deg: f64,
 }
 
@@ -134,20 +125,10 @@ impl Default for Limits {
     }
 }
 
-/// Input that cannot be fitted; the message says what, where, and what to do.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CorrespondenceError {
-    /// A number is missing or infinite.
     #[error("pair {index}: a force or rotation is not finite; remove the pair")]
-    NotFinite {
-        /// Which pair, from 0.
-        index: usize,
-    },
-    /// An implausible force.
-    #[error("pair {index}: {force_n:e} N is no force of a push; check the units (N)")]
-    NotPlausible {
-        /// Which pair, from 0.
-        index: usize,
-        force_n: f64,
-    },
+    NotFinite { index: usize },
+    #[error("pair {index}: {force_n:e} N is not a plausible force of a push; check the units (N)")]
+    NotPlausible { index: usize, force_n: f64 },
 }

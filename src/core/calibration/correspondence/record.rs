@@ -1,5 +1,3 @@
-//! A correspondence as stored in a file.
-
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -13,43 +11,35 @@ use crate::calibration::{Judgement, Record, RecordHead};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CorrespondenceKind {
-    /// `kind = "correspondence"`.
     #[default]
     Correspondence,
 }
 
-/// A fitted correspondence with the figures of its quality.
+/// A fitted correspondence with the measures of its quality.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CorrespondenceRecord {
     pub kind: CorrespondenceKind,
-    /// Sensor, tool and date.
     #[serde(flatten)]
     pub head: RecordHead,
-    /// Whether it may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
-    /// Which rotation it contains.
     pub target: Target,
     /// The sensor under the tissue measured the force on the tissue: its sign was inverted before the fit.
     pub flip_s2: bool,
-    /// Number of pairs used.
     pub pairs: usize,
     /// The rotation (w, x, y, z).
     pub rotation_wxyz: [f64; 4],
-    /// The same as roll, pitch, yaw, degrees; for readers of the file, ignored on loading.
+    /// The rotation as roll, pitch, yaw, degrees; for readers of the file, ignored on loading.
     pub roll_pitch_yaw_deg: [f64; 3],
-    /// Expected angular error, degrees.
     pub uncertainty_deg: f64,
-    /// Errors, fitted and held out, N.
     pub agreement: Agreement,
-    /// Gain and offset between the sensors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<Diagnosis>,
 }
 
 impl CorrespondenceRecord {
-    /// The record of a report; `None` if the report has no rotation. `date` in ISO 8601, UTC.
+    /// Creates the record of a report; `None` if the report has no rotation. `date` in ISO 8601, UTC.
     pub fn of(report: &CorrespondenceReport, [sensor, tool]: [&str; 2], flip_s2: bool, date: &str) -> Option<Self> {
         let solution = report.solution.as_ref()?;
         Some(Self {
@@ -67,12 +57,10 @@ impl CorrespondenceRecord {
         })
     }
 
-    /// The correspondence, for use.
     pub fn correspondence(&self) -> Correspondence {
         Correspondence { target: self.target, rotation: self.rotation(), flip_s2: self.flip_s2 }
     }
 
-    /// The rotation.
     pub fn rotation(&self) -> UnitQuaternion<f64> {
         from_wxyz(&self.rotation_wxyz)
     }
@@ -97,6 +85,6 @@ impl Record for CorrespondenceRecord {
             return Some("rotation_wxyz is not a quaternion of length one");
         }
         let known = (0.0..=180.0).contains(&self.uncertainty_deg);
-        (!known).then_some("uncertainty_deg is no angle of 0 to 180")
+        (!known).then_some("uncertainty_deg is not an angle of 0 to 180")
     }
 }

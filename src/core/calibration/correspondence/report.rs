@@ -1,5 +1,3 @@
-//! Result of a fit of the correspondence.
-
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +7,6 @@ use crate::{
     frames,
 };
 
-/// Which rotation was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
@@ -20,7 +17,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// Its name in files.
+    /// Returns the name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::CFromS2 => "c_from_s2",
@@ -29,25 +26,24 @@ impl Target {
     }
 }
 
-/// Agreement of the rotated force of `s2` with that of `s1`, in the axes of `s1`, N, over the agreeing pushes. Held
-/// out: each push (each tenth of them, in order, beyond 20) is compared with a rotation fitted to the others.
+/// Agreement of the rotated force of `s2` with the force of `s1`, in the axes of `s1`, N, over the agreeing pushes.
+/// Held out: each push (each tenth of them, in order, beyond 20) is compared with a rotation fitted to the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Agreement {
-    /// Errors per axis, N.
     pub residuals: Residuals,
     /// Coefficient of determination per axis of the fit, `1 - sum e^2 / sum (f - mean)^2`.
     pub r2_fitted: [f64; 3],
-    /// The same, held out.
+    /// Coefficient of determination per axis, held out.
     pub r2_held_out: [f64; 3],
-    /// Of all axes together, for the fit.
+    /// Coefficient of determination of all axes together, for the fit.
     pub r2_fitted_overall: f64,
-    /// Of all axes together, held out.
+    /// Coefficient of determination of all axes together, held out.
     pub r2_held_out_overall: f64,
 }
 
 impl Agreement {
-    /// From the forces of `s1` and the errors (N), pair by pair.
+    /// Computes the agreement from the forces of `s1` and the errors (N), pair by pair.
     pub(super) fn of(f1_n: &[Vector3<f64>], fitted_n: &[Vector3<f64>], held_out_n: &[Vector3<f64>]) -> Self {
         let (r2_fitted, r2_fitted_overall) = determination(f1_n, fitted_n);
         let (r2_held_out, r2_held_out_overall) = determination(f1_n, held_out_n);
@@ -57,7 +53,7 @@ impl Agreement {
     }
 }
 
-/// Coefficient of determination per axis and overall; zero if the force did not vary.
+/// Returns the coefficient of determination per axis and overall; zero if the force did not vary.
 fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3], f64) {
     let mean_n = force_n.iter().sum::<Vector3<f64>>() / force_n.len().max(1) as f64;
     let squares = |vectors: &mut dyn Iterator<Item = Vector3<f64>>| {
@@ -69,16 +65,13 @@ fn determination(force_n: &[Vector3<f64>], error_n: &[Vector3<f64>]) -> ([f64; 3
     (unexplained.zip_map(&varied, share).into(), share(unexplained.sum(), varied.sum()))
 }
 
-/// The rotation and its quality.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
-    /// Which rotation it is.
     pub target: Target,
     /// The rotation as a quaternion (w, x, y, z).
     pub rotation_wxyz: [f64; 4],
     /// The rotation as roll, pitch, yaw, degrees (`Rz Ry Rx`).
     pub roll_pitch_yaw_deg: [f64; 3],
-    /// Agreement of the forces.
     pub agreement: Agreement,
     /// Noise of both sensors together per axis, N: standard deviation of the residuals.
     pub noise_n: f64,
@@ -91,39 +84,33 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// The rotation.
     pub fn rotation(&self) -> UnitQuaternion<f64> {
         from_wxyz(&self.rotation_wxyz)
     }
 }
 
-/// A quaternion from its parts; normalised.
 pub(super) fn from_wxyz(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
     let [w, x, y, z] = *wxyz;
     UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z))
 }
 
-/// The parts of a rotation, `w` not negative, and its angles in degrees.
+/// Returns the components of a rotation, with `w` not negative, and its angles in degrees.
 pub(super) fn parts(rotation: &UnitQuaternion<f64>) -> ([f64; 4], [f64; 3]) {
     let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     let wxyz = [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign);
     (wxyz, frames::to_roll_pitch_yaw_deg(rotation).into())
 }
 
-/// Result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CorrespondenceReport {
-    /// Whether it may be used.
     pub verdict: Verdict,
     /// The reason for the verdict, one sentence for the operator.
     pub reason: String,
-    /// Number of pairs given.
     pub pairs: usize,
     /// Indices of pairs that are too weak, from 0; not used.
     pub weak: Vec<usize>,
     /// Indices of pairs that contradict the others, from 0; not used.
     pub outliers: Vec<usize>,
-    /// Distribution of the pushes.
     pub excitation: Excitation,
     /// The rotation; `None` with fewer than three usable pushes. Only to be used with [`Verdict::Accepted`].
     pub solution: Option<Solution>,

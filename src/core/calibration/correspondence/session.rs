@@ -14,7 +14,6 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// Settings of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionSettings {
     /// A push begins above this force at the wrist, N.
@@ -23,14 +22,13 @@ pub struct SessionSettings {
     pub end_n: f64,
     /// Length of the interval that is averaged, s; shorter pushes are refused.
     pub stretch_s: f64,
-    /// Largest variation of the force within that interval (standard deviation of the worst axis of either sensor), N.
+    /// Maximum variation of the force within that interval (standard deviation of the worst axis of either sensor), N.
     pub still_n: f64,
-    /// How long both sensors must be at rest before the first push, s.
+    /// Time for which both sensors must be at rest before the first push, s.
     pub rest_s: f64,
     /// Whether the chain comes from the tracker; without it the result is `s1_from_s2`, valid for one orientation of
     /// the wrist only.
     pub chain: bool,
-    /// Settings of the fit.
     pub options: Options,
 }
 
@@ -48,68 +46,54 @@ impl Default for SessionSettings {
     }
 }
 
-/// What is missing in a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
     /// The gravity-free force at the wrist: the sensor is silent or gravity is not calibrated.
     WristForce,
-    /// The sensor under the tissue.
     TissueForce,
     /// A rotation of the chain, from arm or tracker.
     Chain,
-    /// A number is not finite, or the time does not rise.
+    /// A number is not finite, or the time does not increase.
     Sense,
 }
 
-/// Why a push was not kept.
+/// Reason why a push was not stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    /// It ended before the interval was complete.
     TooShort,
     /// The force was not steady.
     Moved {
         /// Standard deviation of the stillest interval, N.
         by_n: f64,
     },
-    /// The sensor under the tissue measured almost nothing.
     MissedTissue,
-    /// The session is full.
     Full,
 }
 
-/// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// A source is missing; the session is paused.
     Missing(Missing),
     /// Waiting for both sensors to be at rest without contact, before the first push.
     Resting {
-        /// Share of the required time, 0 to 1.
         share: f64,
         /// Reading of the wrist sensor, N; it must be zeroed if this stays above the limit.
         f1_n: f64,
         /// Reading of the sensor under the tissue, N.
         f2_n: f64,
     },
-    /// Ready for the next push.
     Ready,
-    /// The tool is being pushed.
     Pushing {
-        /// Force at the wrist, N.
         force_n: f64,
         /// The interval is long and steady enough: the push may end.
         enough: bool,
     },
     /// The push that just ended was stored with this index.
     Recorded(usize),
-    /// The push that just ended was refused.
     Refused(Refusal),
 }
 
-/// A push to request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushTarget {
-    /// Its name on the screen.
     pub name: &'static str,
     /// Direction in which the tool pushes, unit vector (`world`: x away from the base, y left, z up).
     pub push_in_world: Vector3<f64>,
@@ -136,7 +120,6 @@ pub const TARGETS: [PushTarget; 9] = [
 
 /// Cosine of the angle within which a push counts for a target: 30 degrees.
 const NEAR_TARGET: f64 = 0.866;
-/// Most pushes of a session.
 const MOST_PUSHES: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
@@ -159,7 +142,6 @@ pub struct CorrespondenceSession {
 }
 
 impl CorrespondenceSession {
-    /// A session without pushes.
     pub fn new(settings: SessionSettings) -> Self {
         Self {
             settings,
@@ -177,7 +159,7 @@ impl CorrespondenceSession {
         let reading = match self.reading(f1_n, sample, t_s) {
             Ok(reading) => reading,
             Err(missing) => {
-                // The present push is discarded: one with a gap is not valid.
+                // The current push is discarded, because a push with a gap is invalid.
                 self.stretch.clear();
                 self.phase = Phase::Missing(missing);
                 return self.phase;
@@ -189,7 +171,7 @@ impl CorrespondenceSession {
             Phase::Pushing { .. } => self.push_on(&reading, sample),
             _ if self.rested_s < self.settings.rest_s => self.rest(&reading, gap_s),
             Phase::Missing(_) | Phase::Resting { .. } if reading.f1_n.norm() > self.settings.end_n => {
-                // A push whose beginning was not seen is not used.
+                // A push is not used if its beginning was missed.
                 Phase::Resting { share: 1.0, f1_n: reading.f1_n.norm(), f2_n: reading.f2_n.norm() }
             }
             Phase::Missing(_) | Phase::Resting { .. } => Phase::Ready,
@@ -211,8 +193,8 @@ impl CorrespondenceSession {
         if sense { Ok(Reading { t_s, f1_n, f2_n, s1_from_c }) } else { Err(Missing::Sense) }
     }
 
-    /// Both sensors must read almost nothing for a while, so that one that was not zeroed is found before the first
-    /// push.
+    /// Requires both sensors to read almost zero for a while, so that a sensor that was not zeroed is found before the
+    /// first push.
     fn rest(&mut self, reading: &Reading, gap_s: f64) -> Phase {
         let f1_n = reading.f1_n.norm();
         let f2_n = reading.f2_n.norm();
@@ -254,13 +236,12 @@ impl CorrespondenceSession {
         Phase::Recorded(self.pushes.len() - 1)
     }
 
-    /// State of the session.
     pub const fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// The next push to request: the first direction without a push. Without the arm's kinematics the directions are
-    /// requested in turn. `None` when all are done; further pushes still improve the fit.
+    /// Returns the next push to request: the first direction without a push. Without the arm's kinematics the
+    /// directions are requested in turn. `None` when all are complete; further pushes still improve the fit.
     pub fn target(&self) -> Option<PushTarget> {
         if self.pushes.iter().any(|push| push.towards_in_world.is_none()) {
             return TARGETS.get(self.pushes.len()).copied();
@@ -272,18 +253,16 @@ impl CorrespondenceSession {
         TARGETS.iter().find(|target| !near(target)).copied()
     }
 
-    /// Number of directions.
     pub const fn targets(&self) -> usize {
         TARGETS.len()
     }
 
-    /// Directions of the stored pushes: unit vectors (`world`); those recorded without the arm's kinematics are left
-    /// out.
+    /// Returns the directions of the stored pushes: unit vectors (`world`), without those recorded without the arm's
+    /// kinematics.
     pub fn taken_in_world(&self) -> Vec<Vector3<f64>> {
         self.pushes.iter().filter_map(|push| push.towards_in_world).collect()
     }
 
-    /// Settings of the session.
     pub const fn settings(&self) -> &SessionSettings {
         &self.settings
     }
@@ -293,17 +272,15 @@ impl CorrespondenceSession {
         self.settings.options.flip_s2 = flip_s2;
     }
 
-    /// Number of stored pushes.
     pub const fn pushes(&self) -> usize {
         self.pushes.len()
     }
 
-    /// The stored pushes.
     pub fn pairs(&self) -> Vec<Pair> {
         self.pushes.iter().map(|push| push.pair).collect()
     }
 
-    /// Removes one push; `false` if there is none with this index.
+    /// Removes one push; returns `false` if the index does not exist.
     pub fn remove(&mut self, index: usize) -> bool {
         let there = index < self.pushes.len();
         if there {
@@ -312,15 +289,15 @@ impl CorrespondenceSession {
         there
     }
 
-    /// Removes the newest push; `false` if there is none.
+    /// Removes the newest push; returns `false` if there are no pushes.
     pub fn undo(&mut self) -> bool {
         self.pushes.pop().is_some()
     }
 
-    /// Fits the stored pushes and judges the fit. Allocates; for the screen's thread.
+    /// Fits the stored pushes and evaluates the fit. Allocates, so call it on the screen's thread.
     ///
     /// # Errors
-    /// As [`fit`](super::fit()).
+    /// The errors of [`fit`](super::fit()).
     pub fn report(&self) -> Result<CorrespondenceReport, CorrespondenceError> {
         fit(&self.pairs(), &self.settings.options)
     }

@@ -36,7 +36,7 @@ impl Bench {
         Vector3::from_fn(|_, _| self.noise.gaussian()) * READING_N
     }
 
-    /// One sample with this force on the instrument (`world`), N.
+    /// Adds one sample with this force on the instrument (`world`), N.
     fn feel(&mut self, force_in_world_n: Vector3<f64>) -> Phase {
         self.t_s += 1e-3;
         let f1_n = self.world_from_s1.inverse() * force_in_world_n + self.noise_n();
@@ -76,7 +76,7 @@ fn pushes_in_the_directions_asked_for_give_an_accepted_rotation_within_a_fifth_o
         assert_eq!(bench.rest(700), Phase::Ready, "{seed}");
         let mut asked = Vec::new();
         while bench.session.pairs().len() < 20 {
-            // The wrist turns a little between pushes, as an arm does.
+            // The wrist turns a little between pushes, like a real arm.
             bench.world_from_s1 *= from_roll_pitch_yaw_deg(&Vector3::new(3.0, -5.0, 8.0));
             let astray = bench.noise_n() * 3.0;
             let target = bench.session.target();

@@ -11,7 +11,7 @@ pub(super) struct Row {
     pub(super) c_n: Vector3<f64>,
     /// From the sensor under the tissue, N (`s2`).
     pub(super) s2_n: Vector3<f64>,
-    /// For residuals in the wrist sensor's axes.
+    /// Used for residuals in the wrist sensor's axes.
     pub(super) s1_from_c: UnitQuaternion<f64>,
 }
 
@@ -21,19 +21,19 @@ impl Row {
         Self { c_n: pair.s1_from_c.inverse() * pair.f1_n, s2_n: pair.f2_n * sign, s1_from_c: pair.s1_from_c }
     }
 
-    /// Residual of this rotation, N (`c`).
+    /// Returns the residual of this rotation, N (`c`).
     pub(super) fn residual_n(&self, c_from_s2: &Rotation3<f64>) -> Vector3<f64> {
         c_from_s2 * self.s2_n - self.c_n
     }
 
-    /// The same in the wrist sensor's axes, N (`s1`).
+    /// Returns the residual in the wrist sensor's axes, N (`s1`).
     pub(super) fn residual_in_s1_n(&self, c_from_s2: &Rotation3<f64>) -> Vector3<f64> {
         self.s1_from_c * self.residual_n(c_from_s2)
     }
 }
 
-/// The proper rotation of least squares: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J. Astronaut. Sci.
-/// 1988). Forces in N with equal noise, so a stronger push has more weight, as it should.
+/// Returns the proper rotation of least squares: `U diag(1, 1, det U det V) V^T` of `sum c s2^T` (Markley, J.
+/// Astronaut. Sci. 1988). The noise in N is equal for all forces, so a stronger push has more weight, as it should.
 pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Rotation3<f64> {
     let moment = rows.into_iter().fold(Matrix3::zeros(), |sum, row| sum + row.c_n * row.s2_n.transpose());
     let decomposed = moment.svd(true, true);
@@ -42,10 +42,9 @@ pub(super) fn wahba<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Rotation3<f6
     Rotation3::from_matrix_unchecked(u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t)
 }
 
-/// Result of the robust estimation; the rotation is that of [`wahba`] on the agreeing rows.
+/// Result of the robust estimation; the rotation is the result of [`wahba`] on the agreeing rows.
 #[derive(Clone, Debug)]
 pub(super) struct Consensus {
-    /// Per row: whether it agrees.
     pub(super) inlier: Vec<bool>,
     /// Median length of the residuals of all rows, N.
     pub(super) median_n: f64,
@@ -55,19 +54,21 @@ pub(super) struct Consensus {
 const DRAWS: usize = 300;
 /// Up to this number of rows all pairs are tried instead.
 const EXHAUSTIVE: usize = 24;
-/// Most rows by which a hypothesis is judged; more would only take time.
+/// Maximum number of rows by which a hypothesis is evaluated; more would only take time.
 const JUDGES: usize = 400;
-/// Median length of a 3-D normal vector with a standard deviation of 1 per axis.
+/// Median length of a 3-D normal vector with a standard deviation of 1 per axis: the root of the median 2.366 of
+/// chi-squared with three degrees of freedom, so that the median error gives the standard deviation.
 const MEDIAN_OF_LENGTH: f64 = 1.538;
-/// A residual beyond this many standard deviations is an outlier; one in 900 good ones is lost.
+/// A residual beyond this many standard deviations is an outlier; one in 900 good residuals is lost.
 const CUT: f64 = 4.0;
 /// Lower limit of the standard deviation, N: smaller differences of readings do not matter.
 const FINEST_N: f64 = 0.01;
-/// Two pushes closer to one line than this (sine of the angle) define no rotation.
+/// Two pushes closer to one line than this (sine of the angle) do not define a rotation: 14 degrees, because the
+/// rotation about their common line would be determined by noise.
 const LEAST_SINE: f64 = 0.25;
 
-/// The rows that agree with the rotation of least median residual, over hypotheses from two pushes each; refined
-/// iteratively.
+/// Finds the rows that agree with the rotation of smallest median residual, over hypotheses from two pushes each, and
+/// refines them iteratively.
 pub(super) fn consensus(rows: &[Row]) -> Consensus {
     let mut lengths = Vec::with_capacity(rows.len());
     let mut c_from_s2 = first_guess(rows, &mut lengths);

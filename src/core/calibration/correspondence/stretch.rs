@@ -6,7 +6,6 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::Pair;
 
-/// One sample of both sensors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reading {
     pub(super) t_s: f64,
@@ -15,20 +14,19 @@ pub(super) struct Reading {
     pub(super) s1_from_c: UnitQuaternion<f64>,
 }
 
-/// The best interval so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best {
-    /// Means over the interval.
     pub(super) pair: Pair,
     /// Standard deviation of the worst axis of either sensor, N.
     pub(super) deviation_n: f64,
 }
 
-/// Most samples of an interval (0.1 s at 10 kHz, with a margin); a faster source gets a shorter interval.
+/// Maximum number of samples in an interval (0.1 s at 10 kHz, with a margin); a faster source gets a shorter interval.
 const CAPACITY: usize = 2048;
-/// Fewest samples for a mean.
+/// Minimum number of samples for a mean: with fewer, the error of the standard deviation would be above 22 %
+/// (`1 / sqrt(2 n)`), and rest is judged by it.
 const LEAST_SAMPLES: usize = 10;
-/// An interval weaker than this share of the strongest one is not near the peak.
+/// An interval weaker than this fraction of the strongest one is not near the peak.
 const NEAR_PEAK: f64 = 0.8;
 /// Readings further apart than this belong to different intervals, s.
 const LONGEST_GAP_S: f64 = 0.05;
@@ -56,7 +54,7 @@ impl Sums {
         }
     }
 
-    /// Means of both sensors and the standard deviation of the worst axis.
+    /// Returns the means of both sensors and the standard deviation of the worst axis.
     fn statistics(&self, count: f64) -> ([Vector3<f64>; 2], f64) {
         let mean_n = self.force_n.map(|sum| sum / count);
         let mut variance = 0.0;
@@ -68,19 +66,18 @@ impl Sums {
 }
 
 impl Stretch {
-    /// For intervals of this length, s.
+    /// Creates a window for intervals of this length, s.
     pub(super) fn new(length_s: f64) -> Self {
         Self { length_s, window: VecDeque::with_capacity(CAPACITY), sums: Sums::default(), best: None }
     }
 
-    /// Resets it for the next push.
     pub(super) fn clear(&mut self) {
         self.window.clear();
         self.sums = Sums::default();
         self.best = None;
     }
 
-    /// The best interval so far; `None` until the window has been full.
+    /// Returns the best interval so far; `None` until the window has been full.
     pub(super) const fn best(&self) -> Option<Best> {
         self.best
     }

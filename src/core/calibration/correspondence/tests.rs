@@ -10,7 +10,6 @@ const READING_N: f64 = 0.05;
 /// A push is the mean of this many readings (0.1 s at 1 kHz).
 const READINGS: f64 = 100.0;
 
-/// A rig with a known rotation.
 struct Rig {
     noise: Noise,
     c_from_s2: UnitQuaternion<f64>,
@@ -216,7 +215,7 @@ fn few_weak_or_no_pushes_ask_for_more_and_bad_numbers_are_errors() {
     for count in 0..6 {
         let report = judged(&rig.pushes(count));
         assert_eq!(report.verdict, Verdict::InsufficientMotion, "{count}");
-        assert!(report.reason.contains("6 are needed"), "{}", report.reason);
+        assert!(report.reason.contains("6 are required"), "{}", report.reason);
     }
     let mut pairs = rig.pushes(20);
     for pair in &mut pairs {

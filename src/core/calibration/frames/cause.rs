@@ -1,4 +1,4 @@
-//! Why a frame calibration got its verdict: values for the screen and the record, without sentences.
+//! Reasons for the verdict of a frame calibration: values for the screen and the record, without sentences.
 
 use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -6,42 +6,76 @@ use serde::{Deserialize, Serialize};
 use super::{Carrier, FrameSample};
 use crate::calibration::Verdict;
 
-/// The reason for a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "name", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Cause {
     /// Accurate on held-out data.
     Proven,
-    /// Not enough poses, lines, points or moves.
-    TooFew { have: usize, least: usize },
-    /// It hardly turned: the root mean square of the turns from their mean. A pure translation has none.
-    SmallTurns { turn_deg: f64, least_deg: f64 },
-    /// It turned about one axis only: the root mean square of the turns about the second axis.
-    OneAxis { second_deg: f64, least_deg: f64 },
-    /// The lines are nearly parallel: the root mean square of their tilts from the mean, about the weaker axis.
-    NearlyParallel { tilt_deg: f64, least_deg: f64 },
-    /// The points or directions lie on one line: their spread along the second axis (m, or a share of one for directions).
-    Collinear { spread: f64, least: f64 },
-    /// The directions lie in one plane: their spread along the third axis, as a share of one.
-    OnePlane { spread: f64, least: f64 },
-    /// The force does not follow gravity.
-    Weightless { weight_n: f64, least_n: f64 },
-    /// The data determine the result too weakly: half the length of its 95 % interval.
-    UncertainPlace { by_m: f64, most_m: f64 },
-    /// See [`Cause::UncertainPlace`].
-    UncertainAngle { by_deg: f64, most_deg: f64 },
-    /// The root mean square error in place on held-out data is too large.
-    PoorPlace { by_m: f64, most_m: f64 },
-    /// The same for angles.
-    PoorAngle { by_deg: f64, most_deg: f64 },
-    /// Too many poses contradict the others.
-    Outliers { share: f64, most: f64 },
-    /// Something was mistaken for something else. Undoing this mistake explains the data.
-    Mistake { mistake: Mistake },
+    TooFew {
+        have: usize,
+        least: usize,
+    },
+    /// The carrier hardly turned: root mean square of the turns from their mean. A pure translation has no turns.
+    SmallTurns {
+        turn_deg: f64,
+        least_deg: f64,
+    },
+    /// The carrier turned about one axis only: root mean square of the turns about the second axis.
+    OneAxis {
+        second_deg: f64,
+        least_deg: f64,
+    },
+    /// The lines are nearly parallel: root mean square of their tilts from the mean, about the weaker axis.
+    NearlyParallel {
+        tilt_deg: f64,
+        least_deg: f64,
+    },
+    /// The points or directions lie on one line: their spread along the second axis (m, or a fraction of one for
+    /// directions).
+    Collinear {
+        spread: f64,
+        least: f64,
+    },
+    /// The directions lie in one plane: their spread along the third axis, as a fraction of one.
+    OnePlane {
+        spread: f64,
+        least: f64,
+    },
+    Weightless {
+        weight_n: f64,
+        least_n: f64,
+    },
+    /// The data determine the position too weakly: half the length of its 95 % interval.
+    UncertainPlace {
+        by_m: f64,
+        most_m: f64,
+    },
+    /// The data determine the angle too weakly: half the length of its 95 % interval.
+    UncertainAngle {
+        by_deg: f64,
+        most_deg: f64,
+    },
+    /// The root mean square error of the position on held-out data is too large.
+    PoorPlace {
+        by_m: f64,
+        most_m: f64,
+    },
+    /// The root mean square error of the angle on held-out data is too large.
+    PoorAngle {
+        by_deg: f64,
+        most_deg: f64,
+    },
+    Outliers {
+        share: f64,
+        most: f64,
+    },
+    /// The input contains a mistake. Correcting it explains the data.
+    Mistake {
+        mistake: Mistake,
+    },
 }
 
 impl Cause {
-    /// The verdict that follows.
     pub const fn verdict(&self) -> Verdict {
         match self {
             Self::Proven => Verdict::Accepted,
@@ -62,32 +96,29 @@ impl Cause {
     }
 }
 
-/// A mistake that the data can tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mistake {
-    /// The poses of the two markers are exchanged.
     SwappedMarker,
-    /// The poses of the two arms are exchanged.
     SwappedArm,
-    /// The poses are inverse: camera from marker was expected, marker from camera came (or base and flange).
+    /// The poses are inverse: marker from camera instead of camera from marker (or flange from base).
     InversePose,
-    /// Only their rotations are inverse (a conjugated quaternion).
+    /// Only the rotations are inverse (a conjugated quaternion).
     InverseRotation,
-    /// The poses are those of a left-handed frame (or the signs of all positions are wrong, which is the same).
+    /// The poses belong to a left-handed frame (or, equivalently, all positions have the wrong sign).
     LeftHanded,
-    /// The signs of these axes (x, y, z) of the positions are wrong. A tip or a trocar cannot tell one axis from the
-    /// other two together; the one is named.
+    /// The signs of these axes (x, y, z) of the positions are wrong. A tip or a trocar cannot distinguish one axis from
+    /// the other two together; the single axis is reported.
     WrongSign([bool; 3]),
-    /// The measured axes are the right ones with other names or signs.
+    /// The measured axes are the expected ones with other names or signs.
     WrongAxes(SignedAxes),
-    /// The directions fit in a mirror only: two axes are exchanged, or one points the other way.
+    /// The directions fit only in a mirror: two axes are swapped, or one axis points the other way.
     Mirrored,
 }
 
 impl Mistake {
-    /// The mistakes that the poses of one carrier can show. Position signs up to a common factor of -1, which no
-    /// pivoting shows.
+    /// Returns the mistakes that the poses of one carrier can reveal. Position signs are known up to a common factor of
+    /// -1, which pivoting cannot show.
     pub(super) const fn of_pivoting(carrier: Carrier) -> [Self; 6] {
         [
             Self::swapped(carrier),
@@ -99,7 +130,7 @@ impl Mistake {
         ]
     }
 
-    /// The other side's poses came.
+    /// Returns the mistake of using the other side's poses.
     pub(super) const fn swapped(carrier: Carrier) -> Self {
         match carrier {
             Carrier::Marker => Self::SwappedMarker,
@@ -107,7 +138,8 @@ impl Mistake {
         }
     }
 
-    /// The sample without this mistake, which concerns the poses of `carrier`; `None` if it lacks what that takes.
+    /// Returns the sample without this mistake in the poses of `carrier`; `None` if the sample lacks the required
+    /// poses.
     pub(super) fn undone(self, sample: &FrameSample, carrier: Carrier) -> Option<FrameSample> {
         let mut right = *sample;
         match self {
@@ -133,7 +165,7 @@ impl Mistake {
         let (place_m, turn) = match self {
             Self::InversePose => return Some(pose.inverse()),
             Self::InverseRotation => (place_m, turn.inverse()),
-            // A mirror along z changes the rotation's parts along x and y.
+            // A mirror along z changes the components of the rotation along x and y.
             Self::LeftHanded => (flipped(&place_m, [false, false, true]), mirrored_z(&turn)),
             Self::WrongSign(axes) => (flipped(&place_m, axes), turn),
             Self::SwappedMarker | Self::SwappedArm | Self::WrongAxes(_) | Self::Mirrored => return None,
@@ -166,17 +198,18 @@ impl SignedAxis {
     const ALL: [Self; 6] = [Self::PlusX, Self::PlusY, Self::PlusZ, Self::MinusX, Self::MinusY, Self::MinusZ];
 }
 
-/// Which axes of the expected frame the measured x, y and z are: a permutation with signs.
+/// Assignment of the measured x, y and z to the axes of the expected frame: a permutation with signs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SignedAxes(pub [SignedAxis; 3]);
 
 impl SignedAxes {
-    /// Every axis has its own name and sign.
+    /// Every axis with its own name and sign.
     pub const SAME: Self = Self([SignedAxis::PlusX, SignedAxis::PlusY, SignedAxis::PlusZ]);
-    /// Beyond this angle two frames do not differ by names and signs of axes alone, degrees.
+    /// Beyond this angle two frames differ by more than names and signs of axes, degrees.
     const NEAR_DEG: f64 = 20.0;
 
-    /// The nearest permutation with signs to an orthogonal matrix `measured_from_expected`; `None` if none is within 20 degrees.
+    /// Returns the nearest permutation with signs to an orthogonal matrix `measured_from_expected`; `None` if none is
+    /// within 20 degrees.
     pub(super) fn nearest(measured_from_expected: &Matrix3<f64>) -> Option<Self> {
         let mut axes = [SignedAxis::PlusX; 3];
         let mut taken = [false; 3];

@@ -1,6 +1,7 @@
-//! What every fit does with its rows: leave out those that contradict the others, and compare each with a fit to the rest.
+//! Common part of every fit: leave out the rows that contradict the others, and compare each row with a fit to the
+//! rest.
 
-/// How far a row is from a model; `None` where the calibration has no such error.
+/// Distance of a row from a model; `None` for an error that the calibration does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Miss {
     pub(super) place_m: Option<f64>,
@@ -17,27 +18,24 @@ impl Miss {
     }
 }
 
-/// A kind of rows and of models.
 pub(super) trait Problem {
     type Row: Copy;
     type Model;
-    /// Number of rows of a hypothesis.
     const HYPOTHESIS: usize;
-    /// Errors up to this are those of good rows: at least four standard deviations of the expected noise.
+    /// Errors up to this belong to good rows: at least four standard deviations of the expected noise.
     const FLOOR: Miss;
 
-    /// The model of least squares; `None` if the rows determine none.
+    /// Returns the model of least squares; `None` if the rows do not determine a model.
     fn solve(&self, rows: &[Self::Row]) -> Option<Self::Model>;
 
-    /// A fast model, good enough to tell which rows agree.
+    /// Returns a fast model that is accurate enough to show which rows agree.
     fn guess(&self, rows: &[Self::Row]) -> Option<Self::Model> {
         self.solve(rows)
     }
 
-    /// The error of a row.
     fn miss(&self, model: &Self::Model, row: &Self::Row) -> Miss;
 
-    /// Size of an error relative to the floor.
+    /// Returns the size of an error relative to the floor.
     fn size(&self, model: &Self::Model, row: &Self::Row) -> f64 {
         let miss = self.miss(model, row);
         let part = |miss: Option<f64>, floor: Option<f64>| miss.zip(floor).map_or(0.0, |(miss, floor)| miss / floor);
@@ -46,49 +44,51 @@ pub(super) trait Problem {
     }
 }
 
-/// A model with the errors of the rows.
 #[derive(Debug)]
 pub(super) struct Examined<M> {
     pub(super) model: M,
-    /// Indices of rows that agree, in rising order, and of the others.
+    /// Indices of the rows that agree, in increasing order, and of the others.
     pub(super) kept: Vec<usize>,
     pub(super) outliers: Vec<usize>,
     pub(super) fitted: Vec<Miss>,
-    /// Empty if a fold determines no model.
+    /// Empty if a fold does not determine a model.
     pub(super) held_out: Vec<Miss>,
 }
 
 impl<M> Examined<M> {
-    /// Sum of the squared errors in place of the fit, m^2.
+    /// Returns the sum of the squared position errors of the fit, m^2.
     pub(super) fn squares_m2(&self) -> f64 {
         self.fitted.iter().filter_map(|miss| miss.place_m).map(|miss| miss * miss).sum()
     }
 
-    /// Sum of the squared errors in angle of the fit, rad^2.
+    /// Returns the sum of the squared angle errors of the fit, rad^2.
     pub(super) fn squares_rad2(&self) -> f64 {
         self.fitted.iter().filter_map(|miss| miss.angle_rad).map(|miss| miss * miss).sum()
     }
 }
 
-/// Random hypotheses: with a quarter of outliers and four rows in each, the probability that all contain one is 2e-7.
+/// Number of random hypotheses: with a quarter of outliers and four rows in each, the probability that all contain one
+/// is 2e-7.
 const DRAWS: usize = 40;
-/// Median length of a 3-D normal vector with a standard deviation of 1 per axis.
+/// Median length of a 3-D normal vector with a standard deviation of 1 per axis: the root of the median 2.366 of
+/// chi-squared with three degrees of freedom, so that the median error gives the standard deviation.
 const MEDIAN_OF_LENGTH: f64 = 1.538;
-/// A row beyond this many standard deviations is an outlier.
+/// A row beyond this many standard deviations is an outlier: one in 900 good rows is lost, because the length of a 3-D
+/// normal vector exceeds it so rarely.
 const CUT: f64 = 4.0;
-/// Rows whose median error is above this many floors fit nothing.
+/// If the median error of the rows exceeds this many floors, they do not fit any model.
 const HOPELESS: f64 = 10.0;
 /// Up to this number of rows each is held out alone; above it, every tenth together.
 const LEAVE_ONE_OUT: usize = 20;
 
-/// Fits the rows that agree with each other; `None` if no model can be determined.
+/// Fits the rows that agree with each other; returns `None` if no model can be determined.
 pub(super) fn examined<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Examined<P::Model>> {
     let kept = agreeing(problem, rows)?;
     let outliers = (0..rows.len()).filter(|i| kept.binary_search(i).is_err()).collect();
     let good: Vec<P::Row> = kept.iter().map(|&i| rows[i]).collect();
     let model = problem.solve(&good)?;
     let fitted: Vec<Miss> = good.iter().map(|row| problem.miss(&model, row)).collect();
-    // Rows that fit nothing are not fitted again and again: held out, their errors would be as large.
+    // Rows that do not fit any model are not fitted repeatedly: their held-out errors would be as large.
     let hopeless = median(problem, &model, &good) > HOPELESS;
     let held_out = if hopeless { fitted.clone() } else { held_out(problem, &good).unwrap_or_default() };
     Some(Examined { model, kept, outliers, fitted, held_out })
@@ -106,8 +106,8 @@ fn held_out<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<Miss>> {
     Some(misses)
 }
 
-/// Indices of the rows that agree: all of them if none misses by more than the floor; else those near the hypothesis of
-/// least median error (Rousseeuw 1984), refined until nothing changes.
+/// Returns the indices of the rows that agree: all of them if none misses by more than the floor; else those near the
+/// hypothesis of smallest median error (Rousseeuw 1984), refined until nothing changes.
 fn agreeing<P: Problem>(problem: &P, rows: &[P::Row]) -> Option<Vec<usize>> {
     let whole = problem.guess(rows)?;
     if rows.iter().all(|row| problem.size(&whole, row) <= 1.0) || rows.len() <= P::HYPOTHESIS {

@@ -1,4 +1,4 @@
-//! The mean over a pose that is held still, with bounded memory.
+//! Computes the mean over a pose that is held still, with bounded memory.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -8,19 +8,20 @@ use crate::{calibration::rotation_mean::RotationMean, frames::Wrench};
 /// A sample further than this from the mean of the pose ends it: six standard deviations of a tracker, m and rad.
 const SAMPLE_M: f64 = 1.5e-3;
 const SAMPLE_RAD: f64 = 0.004;
-/// Largest difference between the means of the two halves: a slow motion hides in the noise of single samples, m and rad.
+/// Maximum difference between the means of the two halves: a slow motion hides in the noise of single samples, m and
+/// rad.
 const HALVES_M: f64 = 0.5e-3;
 const HALVES_RAD: f64 = 0.0014;
-/// A longer gap between samples ends a pose, s.
+/// A longer gap between samples ends a pose, s: the tool may have moved meanwhile, so that the mean would mix two
+/// poses.
 const GAP_S: f64 = 0.2;
 const POSES: usize = 5;
 
-/// State of a hold.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Held {
-    /// It moved, by this much from where it was held.
+    /// The pose moved by this much since the hold began.
     Moved { by_m: f64, by_rad: f64 },
-    /// Not long enough yet: the share of the time.
+    /// Not long enough yet: the fraction of the required time.
     Share(f64),
     /// Held long enough: the mean.
     Long(Box<FrameSample>),
@@ -42,7 +43,7 @@ impl Sums {
         sums
     }
 
-    /// Adds a sample; a part that is missing once is missing in the mean.
+    /// Adds a sample; a part that is missing in one sample is missing in the mean.
     fn add(&mut self, sample: &FrameSample) {
         self.count += 1.0;
         for (sum, pose) in self.poses.iter_mut().zip(sample.poses()) {
@@ -83,7 +84,6 @@ impl Sums {
     }
 }
 
-/// The present pose.
 #[derive(Clone, Debug)]
 pub(super) struct Hold {
     time_s: f64,
@@ -102,7 +102,8 @@ impl Hold {
         self.halves = None;
     }
 
-    /// Adds a finite sample at time `t_s` (s, rising). Only poses that this calibration needs (`watched`) must be still.
+    /// Adds a finite sample at time `t_s` (s, increasing). Only poses that this calibration needs (`watched`) must be
+    /// still.
     pub(super) fn step(&mut self, sample: &FrameSample, watched: [bool; POSES], t_s: f64) -> Held {
         if self.time_s <= 0.0 {
             return Held::Long(Box::new(*sample));
@@ -141,7 +142,7 @@ impl Hold {
     }
 }
 
-/// Largest differences of the watched poses, m and rad.
+/// Returns the largest differences of the watched poses, m and rad.
 fn apart(a: &FrameSample, b: &FrameSample, watched: [bool; POSES]) -> (f64, f64) {
     let pairs = a.poses().into_iter().zip(b.poses()).zip(watched).filter(|(_, watched)| *watched);
     pairs.filter_map(|((a, b), _)| a.zip(b)).fold((0.0, 0.0), |(by_m, by_rad): (f64, f64), (a, b)| {

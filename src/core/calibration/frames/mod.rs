@@ -1,14 +1,14 @@
-//! Frame calibrations: where the tip, the marker, the tracker, the trocar and the table are, how the picture is turned,
-//! and how the wrist sensor is mounted.
+//! Frame calibrations: positions of tip, marker, tracker, trocar and table, orientation of the camera image, and mount
+//! of the wrist sensor.
 //!
-//! | settings | find | from |
-//! |---|---|---|
-//! | [`Tip`] | the tip in the frame of marker or flange | poses of it while the tip stays in a dimple |
-//! | [`HandEye`] | `flange_from_m` and `base_from_c` | flange and marker in many orientations |
-//! | [`Trocar`] | the remote centre of motion | lines of the shaft while the instrument pivots |
-//! | [`Table`] | `base_from_table` | points touched with the tip |
-//! | [`View`] | `base_from_view`, `leader_from_view` | moves to the right, up and into the picture |
-//! | [`SensorMount`] | `flange_from_s1` | still poses with the weight of the tool on the wrist sensor |
+//!  settings | find | from |
+//! ---|---|---|
+//!  [`Tip`] | the tip in the frame of marker or flange | poses of it while the tip stays in a dimple |
+//!  [`HandEye`] | `flange_from_m` and `base_from_c` | flange and marker in many orientations |
+//!  [`Trocar`] | the remote centre of motion | lines of the shaft while the instrument pivots |
+//!  [`Table`] | `base_from_table` | points touched with the tip |
+//!  [`View`] | `base_from_view`, `leader_from_view` | moves to the right, up and into the image |
+//!  [`SensorMount`] | `flange_from_s1` | still poses with the weight of the tool on the wrist sensor |
 //!
 //! ```
 //! use nalgebra::{Isometry3, Vector3};
@@ -34,8 +34,8 @@
 //! ```
 //!
 //! Each is a [`Calibration`]; a [`FrameSession`] records for it, [`Calibration::fit`] gives a [`FrameReport`] with the
-//! errors on held-out poses, the 95 % uncertainty and a [`Cause`], and [`FrameReport::record`] what is stored.
-//! [`TrocarWatch`] tells afterwards whether the trocar is where it was. Lengths in m, forces in N, rotations
+//! errors on held-out poses, the 95 % uncertainty and a [`Cause`], and [`FrameReport::record`] the file content.
+//! [`TrocarWatch`] detects afterwards whether the trocar has moved. Lengths in m, forces in N, rotations
 //! `target_from_source`; invalid samples are a [`FrameError`], poor or insufficient ones a verdict.
 
 mod cause;
@@ -67,27 +67,15 @@ pub use tip::{Tip, TipFound};
 pub use trocar::{ShaftLine, Trocar, TrocarFound, TrocarState, TrocarWatch};
 pub use view::{Move, View, ViewFound};
 
-/// Why samples could not be fitted. Messages count poses from 1.
+/// Reason why samples could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
     #[error("pose {} lacks a source ({from:?}); remove it", index + 1)]
-    Missing {
-        /// Index of the pose, from 0.
-        index: usize,
-        from: Source,
-    },
-    #[error("pose {} holds a number that is not finite, or a rotation that is none; remove or repeat it", index + 1)]
-    NotFinite {
-        /// Index of the pose, from 0.
-        index: usize,
-    },
+    Missing { index: usize, from: Source },
+    #[error("pose {} contains a non-finite number or an invalid rotation; remove or repeat it", index + 1)]
+    NotFinite { index: usize },
     #[error("pose {} is {place_m:.0} m away; check the units (m)", index + 1)]
-    NotPlausible {
-        /// Index of the pose, from 0.
-        index: usize,
-        /// Distance from the origin, m.
-        place_m: f64,
-    },
+    NotPlausible { index: usize, place_m: f64 },
     #[error("{setting}; correct the settings")]
     Setting { setting: &'static str },
 }

@@ -1,4 +1,4 @@
-//! The file content of a frame calibration: what was found, what it belongs to, and its quality.
+//! File content of a frame calibration: the result, the devices that it belongs to, and its quality.
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -6,30 +6,27 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use super::{Cause, FrameReport, Sizes};
 use crate::calibration::{Judgement, Record, RecordHead};
 
-/// Serial numbers of what was measured with, besides the wrist sensor in the head; absent if it was not used.
+/// Serial numbers of the devices that measured, apart from the wrist sensor in the head; absent if not used.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Serials {
-    /// Of the arm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arm: Option<String>,
-    /// Of the tracker.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tracker: Option<String>,
-    /// Of the marker, or its definition's name.
+    /// Serial number of the marker, or the name of its definition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub marker: Option<String>,
 }
 
-/// What a calibration finds, as it stands in a file.
+/// Result of a calibration, as stored in a file.
 pub trait Found: Clone + Serialize + DeserializeOwned {
-    /// Kind of its record, also the first part of the file's name.
+    /// Kind of the record, also the first part of the file's name.
     const KIND: &'static str;
-    /// What makes its numbers unusable; `None` if they are usable.
+    /// Returns the fault that makes the numbers unusable; `None` if they are usable.
     fn fault(&self) -> Option<&'static str>;
 }
 
-/// A frame calibration as written to a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound = "F: Found")]
 pub struct FrameRecord<F> {
@@ -38,28 +35,22 @@ pub struct FrameRecord<F> {
     /// Wrist sensor, tool, date and program version.
     #[serde(flatten)]
     pub head: RecordHead,
-    /// Whether it may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
-    /// Number of poses.
     pub poses: usize,
     /// Indices of the poses left out as outliers, from 0.
     pub outliers: Vec<usize>,
-    /// What else was measured with.
+    /// Other devices that measured.
     pub serials: Serials,
-    /// Why it got its verdict.
     pub cause: Cause,
     /// Root mean square error of the poses in the fit.
     pub fitted: Sizes,
-    /// The same on held-out poses.
     pub held_out: Sizes,
-    /// Largest error on a held-out pose.
     pub held_out_max: Sizes,
     /// Half the length of the 95 % interval.
     pub uncertainty: Sizes,
-    /// What was found.
     pub found: F,
-    /// What it changed in the rig file.
+    /// Changes that the calibration made in the rig file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rig: Vec<RigChange>,
 }
@@ -68,18 +59,18 @@ pub struct FrameRecord<F> {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigChange {
-    /// Its key, with dots.
+    /// Key, with dots.
     pub key: String,
-    /// Its value before; `None` if there was none.
+    /// Value before; `None` if the key did not exist.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub before: Option<String>,
-    /// Its value since then; `None` if the key was taken away.
+    /// Value after; `None` if the key was removed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<String>,
 }
 
 impl RigChange {
-    /// The change that undoes this one.
+    /// Returns the change that undoes this one.
     #[must_use]
     pub fn undone(self) -> Self {
         Self { key: self.key, before: self.after, after: self.before }
@@ -119,22 +110,22 @@ impl<F: Found> Record for FrameRecord<F> {
 
     fn fault(&self) -> Option<&'static str> {
         if self.kind != F::KIND {
-            return Some("kind is that of another calibration");
+            return Some("kind belongs to another calibration");
         }
-        // An override may stand in the file, but no verdict that its cause contradicts.
+        // A file may contain an override, but not a verdict that contradicts its cause.
         if self.judgement.verdict != self.cause.verdict() {
             return Some("verdict does not follow from cause");
         }
         let sizes = [self.fitted, self.held_out, self.held_out_max, self.uncertainty];
         let sound = |size: Option<f64>| size.is_none_or(|size| size >= 0.0 && size.is_finite());
         if !sizes.iter().all(|sizes| sound(sizes.place_m) && sound(sizes.angle_deg)) {
-            return Some("an error or uncertainty is no number of zero or more");
+            return Some("an error or uncertainty is negative or not a number");
         }
         self.found.fault()
     }
 }
 
-/// A pose as it stands in a file: place (m) and rotation (w, x, y, z).
+/// A pose as stored in a file: position (m) and rotation (w, x, y, z).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredPose {
@@ -145,12 +136,10 @@ pub struct StoredPose {
 }
 
 impl StoredPose {
-    /// From a pose.
     pub(super) fn of(pose: &Isometry3<f64>) -> Self {
         Self { place_m: pose.translation.vector.into(), rotation_wxyz: wxyz(&pose.rotation) }
     }
 
-    /// The pose.
     pub fn pose(&self) -> Isometry3<f64> {
         Isometry3::from_parts(Vector3::from(self.place_m).into(), rotation(&self.rotation_wxyz))
     }
@@ -160,20 +149,19 @@ impl StoredPose {
     }
 }
 
-/// The parts of a rotation, `w` not negative.
+/// Returns the components of a rotation, with `w` not negative.
 pub(super) fn wxyz(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
     let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     [rotation.w, rotation.i, rotation.j, rotation.k].map(|part| part * sign)
 }
 
-/// A rotation from its parts; normalised.
 pub(super) fn rotation(wxyz: &[f64; 4]) -> UnitQuaternion<f64> {
     let [w, x, y, z] = *wxyz;
     UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
 }
 
 pub(super) fn place_fault(place_m: &[f64; 3]) -> Option<&'static str> {
-    (!place_m.iter().all(|x| x.is_finite() && x.abs() <= 10.0)).then_some("a place is not finite or beyond 10 m")
+    (!place_m.iter().all(|x| x.is_finite() && x.abs() <= 10.0)).then_some("a position is not finite or beyond 10 m")
 }
 
 pub(super) fn rotation_fault(wxyz: &[f64; 4]) -> Option<&'static str> {

@@ -1,4 +1,4 @@
-//! The result of a frame calibration, and what all of them have in common.
+//! Result of a frame calibration, and the parts that all frame calibrations have in common.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -11,35 +11,31 @@ use super::{
 };
 use crate::calibration::{RecordHead, Verdict};
 
-/// A size in place and in angle; `None` where a calibration has no such size.
+/// A size in position and in angle; `None` for a size that the calibration does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sizes {
-    /// Length, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place_m: Option<f64>,
-    /// Angle, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
 }
 
 impl Sizes {
-    /// A length only, m.
     pub const fn place(place_m: f64) -> Self {
         Self { place_m: Some(place_m), angle_deg: None }
     }
 
-    /// An angle only, degrees.
     pub const fn angle(angle_deg: f64) -> Self {
         Self { place_m: None, angle_deg: Some(angle_deg) }
     }
 
-    /// Both, m and degrees.
+    /// Creates a size with length and angle, m and degrees.
     pub const fn both(place_m: f64, angle_deg: f64) -> Self {
         Self { place_m: Some(place_m), angle_deg: Some(angle_deg) }
     }
 
-    /// Root mean square and largest of these misses, in what all of them have.
+    /// Returns the root mean square and the maximum of these misses, in the sizes that all of them have.
     pub(super) fn of(misses: &[Miss]) -> [Self; 2] {
         let sizes = |of: fn(f64, f64) -> f64, finish: &dyn Fn(f64) -> f64| {
             let fold = |part: fn(&Miss) -> Option<f64>| {
@@ -55,27 +51,20 @@ impl Sizes {
     }
 }
 
-/// Limits for a verdict; `None` where a calibration has no such size.
+/// Limits for a verdict; `None` for a size that the calibration does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Smallest number of poses, lines, points or moves.
     pub least: usize,
-    /// Largest root mean square error on held-out data.
     pub held_out: Sizes,
-    /// Largest half length of the 95 % interval.
+    /// Maximum half length of the 95 % interval.
     pub uncertainty: Sizes,
-    /// Largest share of outliers.
     pub outliers: f64,
 }
 
-/// Result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrameReport<F> {
-    /// Whether it may be used.
     pub verdict: Verdict,
-    /// Why.
     pub cause: Cause,
-    /// Number of poses given.
     pub poses: usize,
     /// Indices of poses that contradict the others, from 0; not used.
     pub outliers: Vec<usize>,
@@ -84,16 +73,15 @@ pub struct FrameReport<F> {
     /// Root mean square error on held-out poses. Each pose (beyond 20: each tenth of them) is compared with a fit to the
     /// others; outliers are not counted.
     pub held_out: Sizes,
-    /// Largest error on a held-out pose.
     pub held_out_max: Sizes,
-    /// Half the length of the 95 % interval: in place along the longest axis of its ellipsoid, in angle about any axis.
+    /// Half the length of the 95 % interval: for the position along the longest axis of its ellipsoid, for the angle
+    /// about any axis.
     pub uncertainty: Sizes,
-    /// What was found; `None` if the data determine nothing. Only to be used with [`Verdict::Accepted`].
+    /// The result; `None` if the data do not determine one. Use it only with [`Verdict::Accepted`].
     pub found: Option<F>,
 }
 
 impl<F> FrameReport<F> {
-    /// A report without a result.
     pub fn nothing(poses: usize, cause: Cause) -> Self {
         let none = Sizes::default();
         Self {
@@ -109,7 +97,7 @@ impl<F> FrameReport<F> {
         }
     }
 
-    /// A report of what was found, not judged yet.
+    /// Creates a report with a result but no verdict yet.
     pub(super) fn of<M>(poses: usize, examined: Examined<M>, uncertainty: Sizes, found: F) -> Self {
         let [fitted, _] = Sizes::of(&examined.fitted);
         let [held_out, held_out_max] = Sizes::of(&examined.held_out);
@@ -128,14 +116,14 @@ impl<F> FrameReport<F> {
         }
     }
 
-    /// Changes the cause, and the verdict with it.
+    /// Changes the cause and the verdict that follows from it.
     pub(super) const fn because(mut self, cause: Cause) -> Self {
         self.verdict = cause.verdict();
         self.cause = cause;
         self
     }
 
-    /// The cause that follows from errors and uncertainty.
+    /// Sets the cause that follows from errors and uncertainty.
     pub(super) fn judged(self, limits: &Limits) -> Self {
         let cause = self.cause_within(limits);
         self.because(cause)
@@ -171,63 +159,61 @@ impl<F> FrameReport<F> {
 }
 
 impl<F: Found> FrameReport<F> {
-    /// The record of what was found; `None` if there is nothing. `reason` is the sentence for [`Self::cause`].
+    /// Returns the record of the result; `None` without a result. `reason` is the sentence for [`Self::cause`].
     pub fn record(&self, head: RecordHead, serials: Serials, reason: &str) -> Option<FrameRecord<F>> {
         FrameRecord::of(self, head, serials, reason)
     }
 }
 
-/// Value and limit if the value is above it, is no number or could not be determined.
+/// Returns value and limit if the value exceeds the limit, is NaN or could not be determined.
 fn above(value: Option<f64>, most: Option<f64>) -> Option<(f64, f64)> {
     most.map(|most| (value.unwrap_or(f64::INFINITY), most)).filter(|(value, most)| value.is_nan() || value > most)
 }
 
 /// A frame calibration: its settings, and how it is fitted. [`FrameSession`](super::FrameSession) records for it.
 pub trait Calibration {
-    /// What it finds.
     type Found: Found;
 
-    /// Sources that every sample must have.
     fn needs(&self) -> Vec<Source>;
 
-    /// What moves while it is recorded.
+    /// Returns the carrier that moves while the calibration is recorded.
     fn carrier(&self) -> Carrier;
 
-    /// How long a pose is held, s; 0 takes single samples in motion.
+    /// Returns the time for which a pose is held, s; 0 takes single samples in motion.
     fn hold_s(&self) -> f64 {
         0.5
     }
 
-    /// Whether a pose differs enough from those taken.
+    /// Returns whether a pose differs enough from those already taken.
     fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool;
 
-    /// How much of the motion is there, and what is missing.
+    /// Returns the completed fraction of the motion and the missing part.
     fn coverage(&self, taken: &[FrameSample]) -> Coverage;
 
-    /// The fit as the data are given; the samples are checked.
+    /// Fits the data as given; the samples have been checked.
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<Self::Found>;
 
-    /// Mistakes to look for, the likeliest first, and the carrier whose poses they concern.
+    /// Returns the mistakes to look for, the likeliest first, and the carrier whose poses they concern.
     fn mistakes(&self) -> Vec<(Mistake, Carrier)>;
 
-    /// What makes these settings unusable.
     fn fault(&self) -> Option<&'static str> {
         None
     }
 
-    /// Fits and judges. `Err` is returned for invalid samples and settings only; data that determine nothing, or fit badly, give
-    /// a report with that verdict. A mistake is named if undoing it, and only that, gives data that are accepted.
+    /// Fits and evaluates. `Err` is returned for invalid samples and settings only; data that do not determine a
+    /// result, or fit badly, give a report with that verdict. A mistake is reported if correcting it, and only it,
+    /// gives data that are accepted.
     ///
     /// # Errors
-    /// [`FrameError`] for a sample without a source, with a number that is not finite, or beyond 10 m; for settings that
-    /// are not finite.
+    /// [`FrameError`] for a sample that lacks a source, has a non-finite number or is beyond 10 m, and for non-finite
+    /// settings.
     fn fit(&self, samples: &[FrameSample]) -> Result<FrameReport<Self::Found>, FrameError> {
         if let Some(setting) = self.fault() {
             return Err(FrameError::Setting { setting });
         }
         check(samples, &self.needs())?;
         let given = self.attempt(samples);
-        // Data that fit, in a way that cannot be, have named their mistake already.
+        // Data that fit in an impossible way have already revealed their mistake.
         let fits = given.found.is_some() && matches!(given.cause, Cause::Mistake { .. });
         if given.verdict == Verdict::Accepted || fits {
             return Ok(given);
@@ -249,10 +235,9 @@ pub trait Calibration {
     }
 }
 
-/// A less likely mistake is named if its error is below this share of a likelier one's.
+/// A less likely mistake is reported if its error is below this fraction of a likelier one's.
 const CLEARLY: f64 = 0.7;
 
-/// Whether every number is finite.
 pub(super) fn finite(vector: &Vector3<f64>) -> bool {
     vector.iter().all(|x| x.is_finite())
 }

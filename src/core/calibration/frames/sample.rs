@@ -1,4 +1,4 @@
-//! What a frame calibration is fed with: poses of flange, marker and handle, and the wrench at the wrist.
+//! Input of a frame calibration: poses of flange, marker and handle, and the wrench at the wrist.
 
 use nalgebra::{Isometry3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -6,17 +6,17 @@ use serde::{Deserialize, Serialize};
 use super::FrameError;
 use crate::{calibration::gravity, frames::Wrench};
 
-/// A place further away than this is no place of a rig, m: the numbers are probably millimetres.
+/// A position farther away than this does not belong to a rig, m: the numbers are probably millimetres.
 const FARTHEST_M: f64 = 10.0;
 
-/// Measurements of one moment, or the means over a still pose. What a rig does not measure is `None`.
+/// Measurements of one moment, or the means over a still pose. Quantities that a rig does not measure are `None`.
 ///
-/// The poses of the other side are not used for a fit. They tell when two markers or two arms were mistaken for each other.
+/// The poses of the other side are not used for a fit. They reveal whether two markers or two arms were confused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameSample {
     /// The arm's flange in the frame of the arm's base, m, from the joints ([`crate::kinematics::Chain`]).
     pub base_from_flange: Option<Isometry3<f64>>,
-    /// The same of the other arm, in its own base's frame.
+    /// Pose of the other arm's flange, in that arm's own base frame.
     pub other_base_from_flange: Option<Isometry3<f64>>,
     /// The instrument's marker in the tracker camera's frame, m.
     pub c_from_m: Option<Isometry3<f64>>,
@@ -24,11 +24,11 @@ pub struct FrameSample {
     pub c_from_other_m: Option<Isometry3<f64>>,
     /// The haptic handle in the leader's frame, m.
     pub leader_from_handle: Option<Isometry3<f64>>,
-    /// Wrench on the wrist sensor as read (`s1`), N and Nm.
+    /// Unprocessed wrench on the wrist sensor (`s1`), N and Nm.
     pub wrench: Option<Wrench>,
 }
 
-/// What moves while a calibration is recorded, and the frame in which it is seen.
+/// The part that moves while a calibration is recorded, and the frame in which it is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Carrier {
@@ -40,21 +40,16 @@ pub enum Carrier {
     Handle,
 }
 
-/// A source that a calibration needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The arm's joints.
     Flange,
-    /// The tracker, with the marker in sight.
+    /// The tracker, with the marker in view.
     Marker,
-    /// The handle.
     Handle,
-    /// The wrist sensor.
     Wrench,
 }
 
 impl Carrier {
-    /// The source of its pose.
     pub const fn source(self) -> Source {
         match self {
             Self::Marker => Source::Marker,
@@ -65,8 +60,9 @@ impl Carrier {
 }
 
 impl FrameSample {
-    /// A gravity pose whose orientation came from the arm, with the mount `flange_from_s1` that was in force then and
-    /// the mounting of the base; `None` for a pose by the accelerometer. Only its orientation and force are of use.
+    /// Converts a gravity pose whose orientation came from the arm, with the mount `flange_from_s1` that was active
+    /// then and the mounting of the base; returns `None` for a pose by the accelerometer. Only its orientation and
+    /// force may be used.
     pub fn of_gravity_pose(
         pose: &gravity::Pose,
         flange_from_s1: &nalgebra::UnitQuaternion<f64>,
@@ -78,7 +74,6 @@ impl FrameSample {
         Some(Self { base_from_flange: Some(pose_m), wrench: Some(pose.wrench), ..Self::default() })
     }
 
-    /// Pose of a carrier.
     pub const fn pose(&self, carrier: Carrier) -> Option<&Isometry3<f64>> {
         match carrier {
             Carrier::Marker => self.c_from_m.as_ref(),
@@ -95,7 +90,7 @@ impl FrameSample {
         }
     }
 
-    /// Pose of the same carrier on the other side; no other handle is told.
+    /// Returns the pose of the same carrier on the other side; the other handle is not available.
     pub(super) const fn other_pose(&self, carrier: Carrier) -> Option<&Isometry3<f64>> {
         match carrier {
             Carrier::Marker => self.c_from_other_m.as_ref(),
@@ -113,7 +108,6 @@ impl FrameSample {
         }
     }
 
-    /// All poses in it.
     pub(super) fn poses(&self) -> [Option<Isometry3<f64>>; 5] {
         [
             self.base_from_flange,
@@ -124,13 +118,13 @@ impl FrameSample {
         ]
     }
 
-    /// The same sample with these poses, in the order of [`Self::poses`].
+    /// Returns the sample with these poses, in the order of [`Self::poses`].
     pub(super) const fn with_poses(self, poses: &[Option<Isometry3<f64>>; 5]) -> Self {
         let [base_from_flange, other_base_from_flange, c_from_m, c_from_other_m, leader_from_handle] = *poses;
         Self { base_from_flange, other_base_from_flange, c_from_m, c_from_other_m, leader_from_handle, ..self }
     }
 
-    /// Whether every number is finite and every rotation has length one.
+    /// Returns whether every number is finite and every rotation has length one.
     pub fn is_finite(&self) -> bool {
         let sound = |pose: &Isometry3<f64>| {
             let unit = (pose.rotation.coords.norm() - 1.0).abs() < 1e-6;
@@ -144,7 +138,7 @@ impl FrameSample {
     }
 }
 
-/// Refuses samples that lack a source or are no measurement.
+/// Refuses samples that lack a source or are not valid measurements.
 pub(super) fn check(samples: &[FrameSample], needs: &[Source]) -> Result<(), FrameError> {
     for (index, sample) in samples.iter().enumerate() {
         if let Some(&from) = needs.iter().find(|&&source| !sample.has(source)) {

@@ -1,9 +1,9 @@
 //! The mount of the wrist sensor: `flange_from_s1` from the weight of the tool in still poses of the arm.
 //!
-//! In a still pose `f = m R u + f0` with the gravity vector `u` in the flange's frame, which the joints tell. `R = s1_from_flange`, the
-//! mass `m` and the bias `f0` of least squares follow in closed form: differences from the means take the bias away, `R` is
-//! Wahba's problem on them, `m` their scale (Umeyama, IEEE Trans. Pattern Anal. Mach. Intell. 13, 1991). The result is compared
-//! with the mount in force.
+//! In a still pose `f = m R u + f0` with the gravity vector `u` in the flange's frame, which follows from the joints.
+//! The least-squares `R = s1_from_flange`, mass `m` and bias `f0` have a closed form: differences from the means remove
+//! the bias, `R` is Wahba's problem on them, `m` their scale (Umeyama, IEEE Trans. Pattern Anal. Mach. Intell. 13,
+//! 1991). The result is compared with the active mount.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -18,37 +18,38 @@ use super::{
 };
 use crate::frames::GRAVITY_M_S2;
 
-/// Smallest turn of the flange against gravity between two poses, rad.
+/// Minimum turn of the flange relative to gravity between two poses, rad: 10 degrees, so that a person who hardly moves
+/// does not fill the session with equal poses. Chosen.
 const APART_RAD: f64 = 0.17;
-/// Smallest root mean square of the directions of gravity from their mean along the third axis, 0 to 1; 0.58 for all directions.
+/// Minimum root mean square of the directions of gravity from their mean along the third axis, 0 to 1; 0.58 for all
+/// directions.
 const LEAST_SPREAD: f64 = 0.1;
 const PLENTY_SPREAD: f64 = 0.35;
 const PLENTY: usize = 12;
-/// Smallest weight, N, and as a multiple of the noise.
+/// Minimum weight, N, and as a multiple of the noise.
 const LEAST_WEIGHT_N: f64 = 0.3;
 const LEAST_SIGNAL: f64 = 5.0;
-/// A mirror explains the forces if its error is below this share of the rotation's.
+/// A mirror explains the forces if its error is below this fraction of the rotation's.
 const MIRROR_SHARE: f64 = 0.5;
 
-/// Settings of the sensor mount's calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorMount {
-    /// The mount in force, `flange_from_s1`.
+    /// The active mount, `flange_from_s1`.
     pub in_force: UnitQuaternion<f64>,
     /// Direction upwards in the frame of the arm's base.
     pub up_in_base: Vector3<f64>,
-    /// Limits for the verdict.
     pub limits: Limits,
 }
 
 impl SensorMount {
-    /// For a comparison with this mount (`flange_from_s1`), on an arm with this direction upwards in its base's frame.
+    /// Creates the settings for a comparison with this mount (`flange_from_s1`), on an arm with this upward direction
+    /// in its base's frame.
     pub const fn new(in_force: UnitQuaternion<f64>, up_in_base: Vector3<f64>) -> Self {
         let limits = Limits { least: 6, held_out: Sizes::angle(5.0), uncertainty: Sizes::angle(3.0), outliers: 0.25 };
         Self { in_force, up_in_base, limits }
     }
 
-    /// Direction of gravity in the flange's frame, unit length.
+    /// Returns the direction of gravity in the flange's frame, unit length.
     fn down_in_flange(&self, sample: &FrameSample) -> Option<Vector3<f64>> {
         Some(-(sample.base_from_flange?.rotation.inverse() * self.up_in_base.try_normalize(0.0)?))
     }
@@ -60,34 +61,29 @@ impl SensorMount {
     }
 }
 
-/// The mount that was found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorMountFound {
-    /// `flange_from_s1`.
     pub flange_from_s1_wxyz: [f64; 4],
-    /// Angle between this mount and the one in force, degrees.
+    /// Angle between this mount and the active one, degrees.
     pub from_in_force_deg: f64,
-    /// Which axes of the mount in force the measured x, y and z are, if the two differ by names and signs of axes; all the same if they
-    /// agree. `None` if they differ otherwise.
+    /// Axes of the active mount that the measured x, y and z are, if the two mounts differ by names and signs of axes;
+    /// all equal if they agree. `None` if they differ in another way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<SignedAxes>,
-    /// Mass of the tool, kg.
     pub mass_kg: f64,
     /// Bias of the sensor, N (`s1`).
     pub bias_n: [f64; 3],
 }
 
 impl SensorMountFound {
-    /// A mount that differs by less than this agrees with the one in force, degrees.
+    /// A mount that differs from the active one by less than this agrees with it, degrees.
     pub const AGREES_DEG: f64 = 3.0;
 
-    /// `flange_from_s1`.
     pub fn flange_from_s1(&self) -> UnitQuaternion<f64> {
         rotation(&self.flange_from_s1_wxyz)
     }
 
-    /// Whether the mount in force is right.
     pub fn agrees(&self) -> bool {
         self.from_in_force_deg <= Self::AGREES_DEG
     }
@@ -101,12 +97,12 @@ impl Found for SensorMountFound {
             && self.mass_kg > 0.0
             && self.mass_kg.is_finite()
             && self.bias_n.iter().all(|x| x.is_finite());
-        let fault = (!sound).then_some("an angle, the mass or the bias is no such number");
+        let fault = (!sound).then_some("an angle, the mass or the bias is out of range");
         rotation_fault(&self.flange_from_s1_wxyz).or(fault)
     }
 }
 
-/// One pose: direction of gravity in the flange's frame (unit length), and the force as read (N, `s1`).
+/// One pose: direction of gravity in the flange's frame (unit length), and the measured force (N, `s1`).
 #[derive(Clone, Copy, Debug)]
 struct Row {
     down: Vector3<f64>,
@@ -126,7 +122,7 @@ impl Weighed {
         row.force_n - self.turn * row.down * self.weight_n - self.bias_n
     }
 
-    /// The least-squares solution with this sign of the determinant: 1 for a rotation, -1 for a reflection.
+    /// Returns the least-squares solution with this sign of the determinant: 1 for a rotation, -1 for a reflection.
     fn of(rows: &[Row], sign: f64) -> Option<Self> {
         let share = 1.0 / rows.len().max(1) as f64;
         let down = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() * share;
@@ -154,13 +150,13 @@ impl Problem for Weighing {
         Weighed::of(rows, self.sign)
     }
 
-    /// The error of the force as an angle of the weight.
+    /// Returns the error of the force as an angle of the weight.
     fn miss(&self, weighed: &Weighed, row: &Row) -> Miss {
         Miss::of_angle(libm::atan(weighed.error_n(row).norm() / weighed.weight_n))
     }
 }
 
-/// Spread of the directions of gravity about their mean along the third axis.
+/// Returns the spread of the directions of gravity about their mean along the third axis.
 fn spread(rows: &[Row]) -> f64 {
     let mean = rows.iter().map(|row| row.down).sum::<Vector3<f64>>() / rows.len().max(1) as f64;
     let from_mean: Vec<Vector3<f64>> = rows.iter().map(|row| row.down - mean).collect();
@@ -178,7 +174,6 @@ impl Calibration for SensorMount {
         Carrier::Flange
     }
 
-    /// Only the direction of gravity counts.
     fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
         let Some(down) = self.down_in_flange(sample) else { return false };
         taken.iter().filter_map(|sample| self.down_in_flange(sample)).all(|other| other.angle(&down) >= APART_RAD)
@@ -195,7 +190,7 @@ impl Calibration for SensorMount {
         let sound = finite(&self.up_in_base)
             && self.up_in_base.norm() > 0.0
             && (self.in_force.coords.norm() - 1.0).abs() < 1e-6;
-        (!sound).then_some("the mount in force or the direction upwards is not finite")
+        (!sound).then_some("the active mount or the upward direction is not finite")
     }
 
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<SensorMountFound> {
@@ -248,17 +243,18 @@ impl SensorMount {
         }
     }
 
-    /// Forces that fit in a mirror only have an axis with a wrong sign, or two that are exchanged: no mount does that.
+    /// Detects forces that fit only in a mirror: an axis has the wrong sign, or two axes are swapped, which no mount
+    /// can cause.
     fn mirrored(&self, rows: &[Row]) -> Option<Mistake> {
         let error = |sign| {
             let found = Weighed::of(rows, sign)?;
             let mut squares: Vec<f64> = rows.iter().map(|row| found.error_n(row).norm_squared()).collect();
-            // The median: a touched pose does not decide.
+            // The median, so that a single touched pose has no influence.
             let middle = squares.len() / 2;
             Some((*squares.select_nth_unstable_by(middle, f64::total_cmp).1, found))
         };
         let (mirror, found) = error(-1.0)?;
-        // Without a rotation that sees any weight, the mirror stands alone.
+        // Without a rotation that finds any weight, only the mirror remains.
         let turn = error(1.0).map_or(f64::INFINITY, |(turn, _)| turn);
         if mirror >= MIRROR_SHARE * MIRROR_SHARE * turn {
             return None;
@@ -268,7 +264,7 @@ impl SensorMount {
     }
 }
 
-/// Covariance of the turn (rotation vector in `s1`, rad), with the bias estimated beside it.
+/// Returns the covariance of the turn (rotation vector in `s1`, rad), estimated together with the bias.
 fn turn_covariance(rows: &[Row], weighed: &Weighed, variance_n2: f64) -> Option<Matrix3<f64>> {
     let slopes: Vec<Matrix3<f64>> =
         rows.iter().map(|row| -(weighed.turn * row.down * weighed.weight_n).cross_matrix()).collect();

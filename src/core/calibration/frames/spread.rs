@@ -1,30 +1,30 @@
-//! Whether turns and directions suffice, and the 95 % regions of what is found.
+//! Determines whether turns and directions suffice, and the 95 % regions of a result.
 
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 use super::Cause;
 
-/// Limits of the turns, degrees (root mean square about the mean orientation).
+/// Minimum turns, degrees (root mean square about the mean orientation).
 const LEAST_TURN_DEG: f64 = 8.0;
 const LEAST_SECOND_DEG: f64 = 5.0;
 
-/// How far poses turn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turns {
-    /// Turns that the best and the worst determined direction of a lever sees, degrees.
+    /// Turns about the best and the worst determined direction of a lever, degrees.
     pub(super) most_deg: f64,
     pub(super) least_deg: f64,
 }
 
 impl Turns {
-    /// Of these poses: from the eigenvalues of [`lever_matrix`]. A turn about one axis leaves the lever along it undetermined.
+    /// Computes the turns of these poses from the eigenvalues of [`lever_matrix`]. A turn about one axis leaves the
+    /// lever along that axis undetermined.
     pub(super) fn of<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Self {
         let values = lever_matrix(poses).map_or(Vector3::zeros(), |matrix| matrix.symmetric_eigenvalues());
         let degrees = |square: f64| square.max(0.0).sqrt().to_degrees();
         Self { most_deg: degrees(values.max()), least_deg: degrees(values.min()) }
     }
 
-    /// Why they do not suffice, if so.
+    /// Returns the reason why the turns do not suffice, if so.
     pub(super) fn lacking(self) -> Option<Cause> {
         let Self { most_deg, least_deg } = self;
         if below(most_deg, LEAST_TURN_DEG) {
@@ -35,13 +35,13 @@ impl Turns {
     }
 }
 
-/// Whether a value does not reach its least; NaN does not.
+/// Returns whether a value is below its minimum, or NaN.
 pub(super) const fn below(value: f64, least: f64) -> bool {
     value.is_nan() || value < least
 }
 
-/// `I - R^T R` with the mean `R` of the rotation matrices: the normal matrix of a lever `t` in `R_i t - b = d_i` per pose, after `b`
-/// is eliminated. `None` without poses.
+/// Returns `I - R^T R` with the mean `R` of the rotation matrices: the normal matrix of a lever `t` in
+/// `R_i t - b = d_i` per pose, after `b` is eliminated. `None` without poses.
 pub(super) fn lever_matrix<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Option<Matrix3<f64>> {
     let mut sum = Matrix3::zeros();
     let mut count = 0.0;
@@ -53,13 +53,14 @@ pub(super) fn lever_matrix<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) 
     (count > 0.0).then(|| Matrix3::identity() - mean.transpose() * mean)
 }
 
-/// Square of the radius of a 95 % region in three dimensions, in variances: chi-squared, corrected for a variance that was
-/// estimated with this many degrees of freedom (3 F(3, freedom) within 3 % from 12 on, and larger below).
+/// Returns the square of the radius of a 95 % region in three dimensions, in variances: chi-squared, corrected for a
+/// variance that was estimated with this many degrees of freedom (3 F(3, freedom) within 3 % from 12 degrees of freedom
+/// on, and larger below).
 fn square_95(freedom: usize) -> f64 {
     7.815 / (1.0 - 3.2 / freedom.max(4) as f64)
 }
 
-/// Half axes of the 95 % ellipsoid of a covariance, the longest first.
+/// Returns the half axes of the 95 % ellipsoid of a covariance, the longest first.
 pub(super) fn ellipsoid_95(covariance: &Matrix3<f64>, freedom: usize) -> [Vector3<f64>; 3] {
     let Some(eigen) = SymmetricEigen::try_new(*covariance, f64::EPSILON, 100) else {
         return [Vector3::repeat(f64::NAN); 3];
@@ -71,12 +72,13 @@ pub(super) fn ellipsoid_95(covariance: &Matrix3<f64>, freedom: usize) -> [Vector
     axes
 }
 
-/// Longest half axis of the 95 % ellipsoid of a covariance.
+/// Returns the longest half axis of the 95 % ellipsoid of a covariance.
 pub(super) fn radius_95(covariance: &Matrix3<f64>, freedom: usize) -> f64 {
     ellipsoid_95(covariance, freedom)[0].norm()
 }
 
-/// Root mean squares of vectors along their principal axes, the longest first; NaN if a vector is not finite.
+/// Returns the root mean squares of vectors along their principal axes, the longest first; NaN if a vector is not
+/// finite.
 pub(super) fn principal(vectors: &[Vector3<f64>]) -> [f64; 3] {
     let sum: Matrix3<f64> = vectors.iter().map(|v| v * v.transpose()).sum();
     let mut axes: [f64; 3] =
@@ -85,8 +87,8 @@ pub(super) fn principal(vectors: &[Vector3<f64>]) -> [f64; 3] {
     axes
 }
 
-/// The orthogonal matrix `Q` with this sign of its determinant that is nearest to `moment = sum target source^T`, so that
-/// `sum |target - Q source|^2` is least (Markley, J. Astronaut. Sci. 1988).
+/// Returns the orthogonal matrix `Q` with this sign of its determinant that is nearest to
+/// `moment = sum target source^T` and thus minimises `sum |target - Q source|^2` (Markley, J. Astronaut. Sci. 1988).
 pub(super) fn nearest_orthogonal(moment: &Matrix3<f64>, sign: f64) -> Option<Matrix3<f64>> {
     let decomposed = moment.try_svd(true, true, f64::EPSILON, 100)?;
     let u = decomposed.u?;

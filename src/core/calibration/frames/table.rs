@@ -1,7 +1,7 @@
 //! The table: origin and plane of the workspace from points touched with the tip.
 //!
-//! The first point is the origin, the second lies along +x, the third on the side of +y; all further points lie anywhere on the plane
-//! and prove it. The plane is that of least squares to all points.
+//! The first point is the origin, the second lies along +x, the third on the side of +y; further points may lie
+//! anywhere on the plane and verify it. The plane is the least-squares fit to all points.
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -16,37 +16,38 @@ use super::{
 };
 use crate::calibration::Verdict;
 
-/// Smallest distance between two points, m.
+/// Minimum distance between two points, m, so that a tip that rests does not fill the session with equal points.
+/// Chosen.
 const APART_M: f64 = 0.02;
-/// Smallest root mean square spread of the points along the second axis of their plane, m; and of a complete session.
+/// Minimum root mean square spread of the points along the second axis of their plane, m; and of a complete session.
 const LEAST_SPREAD_M: f64 = 0.015;
 const PLENTY_SPREAD_M: f64 = 0.03;
 const PLENTY: usize = 6;
-/// Noise of a touch per axis, m, and of how many degrees of freedom this is worth: few points do not tell their noise.
+/// Noise of a touch per axis, m, and the degrees of freedom that this prior is worth, because few points do not
+/// determine their own noise.
 const NOISE_M: f64 = 0.35e-3;
 const NOISE_FREEDOM: usize = 8;
 
-/// Settings of the table's calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table {
-    /// What tells the pose of the tip: marker or flange.
+    /// Source of the tip's pose: marker or flange.
     pub carrier: Carrier,
     /// The tip in the frame of the marker or of the flange, m.
     pub tip_in_carrier_m: Vector3<f64>,
-    /// Direction upwards in the frame of the camera or of the base, if known. Then a table whose z axis points down is refused:
-    /// its x and y axes were exchanged.
+    /// Upward direction in the frame of the camera or of the base, if known. A table whose z axis points down is then
+    /// refused, because its x and y axes were swapped.
     pub up: Option<Vector3<f64>>,
-    /// Limits for the verdict.
     pub limits: Limits,
 }
 
 impl Table {
-    /// By the arm's joints, with the tip here in the flange's frame (m) and this direction upwards in the base's frame.
+    /// Creates the settings for the arm's joints, with the tip at this position in the flange's frame (m) and this
+    /// upward direction in the base's frame.
     pub const fn by_arm(tip_in_flange_m: Vector3<f64>, up_in_base: Vector3<f64>) -> Self {
         Self::of(Carrier::Flange, tip_in_flange_m, Some(up_in_base))
     }
 
-    /// By the tracker, with the tip here in the marker's frame (m).
+    /// Creates the settings for the tracker, with the tip at this position in the marker's frame (m).
     pub const fn by_tracker(tip_in_m_m: Vector3<f64>) -> Self {
         Self::of(Carrier::Marker, tip_in_m_m, None)
     }
@@ -66,11 +67,11 @@ impl Table {
     }
 }
 
-/// A table that was found, in the frame of the camera or of the arm's base.
+/// A calibrated table, in the frame of the camera or of the arm's base.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TableFound {
-    /// By which the points were measured: marker (frame of the camera) or flange (frame of the base).
+    /// Source of the points: marker (frame of the camera) or flange (frame of the base).
     pub carrier: Carrier,
     /// `c_from_table` or `base_from_table`: origin, x along the first two points, z up from the plane.
     pub from_table: StoredPose,
@@ -112,21 +113,21 @@ impl Problem for Touches {
     }
 }
 
-/// Mean of the points, and the mean of the outer products of their distances from it.
+/// Returns the mean of the points, and the mean of the outer products of their distances from it.
 fn scatter(points: &[Vector3<f64>]) -> (Vector3<f64>, Matrix3<f64>) {
     let share = 1.0 / points.len().max(1) as f64;
     let middle = points.iter().sum::<Vector3<f64>>() * share;
     (middle, points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum::<Matrix3<f64>>() * share)
 }
 
-/// Spread of the points along the second axis of their plane, m.
+/// Returns the spread of the points along the second axis of their plane, m.
 fn second_spread_m(points: &[Vector3<f64>]) -> f64 {
     let (middle, _) = scatter(points);
     let from_middle: Vec<Vector3<f64>> = points.iter().map(|point| point - middle).collect();
     principal(&from_middle)[1]
 }
 
-/// Axes of the table, from its plane and the three points that define them; `None` if these lie on one line.
+/// Returns the axes of the table from its plane and the three points that define them; `None` if these lie on one line.
 fn axes(plane: &Plane, [origin, along, beside]: [Vector3<f64>; 3]) -> Option<Isometry3<f64>> {
     let onto = |v: Vector3<f64>| v - plane.normal * v.dot(&plane.normal);
     let x = onto(along - origin).try_normalize(APART_M / 2.0)?;
@@ -166,7 +167,7 @@ impl Calibration for Table {
 
     fn fault(&self) -> Option<&'static str> {
         let sound = finite(&self.tip_in_carrier_m) && self.up.is_none_or(|up| finite(&up) && up.norm() > 0.0);
-        (!sound).then_some("the tip or the direction upwards is not finite")
+        (!sound).then_some("the tip or the upward direction is not finite")
     }
 
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<TableFound> {
@@ -182,7 +183,8 @@ impl Calibration for Table {
         }
         let Some(found) = examined(&Touches, &points) else { return collinear(0.0) };
         let kept: Vec<Vector3<f64>> = found.kept.iter().map(|&i| points[i]).collect();
-        // The points that define the axes must be on the plane, and the others must not lie on a line with a single point beside it.
+        // The points that define the axes must be on the plane, and the others must not lie on a line with a single
+        // point off it.
         let alone = (0..kept.len()).any(|i| {
             let others: Vec<Vector3<f64>> = kept.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, p)| *p).collect();
             kept.len() > 3 && second_spread_m(&others) < 0.5 * LEAST_SPREAD_M
@@ -211,7 +213,8 @@ impl Calibration for Table {
     }
 }
 
-/// Half lengths of the 95 % intervals: of the origin, and of the table's orientation (tilt of the plane, turn of x in it).
+/// Returns the half lengths of the 95 % intervals of the origin and of the table's orientation (tilt of the plane, turn
+/// of x in it).
 fn uncertainty(points: &[Vector3<f64>], squares_m2: f64, x_m: f64) -> Sizes {
     let freedom = points.len().saturating_sub(3) + NOISE_FREEDOM;
     let variance_m2 = (squares_m2 + NOISE_FREEDOM as f64 * NOISE_M * NOISE_M) / freedom as f64;

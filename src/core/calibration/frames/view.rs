@@ -1,9 +1,10 @@
-//! The endoscope's view: how the picture is turned against the arm, the camera or the handle, from moves seen in the picture.
+//! The endoscope's view: orientation of the camera image relative to the arm, the camera or the handle, from moves seen
+//! in the image.
 //!
-//! The person moves the tip (or the handle) to the right in the picture, up, into it, and back the same way. Each way in the frame of
-//! base, camera or leader belongs to a known direction in the frame `view` (x right, y down, z into the picture); the rotation
-//! between the two sets is Wahba's problem (Markley 1988). The product of both rotations is what
-//! [`crate::kinematics::Mapping::new`] takes: then "right" on the handle is right in the picture.
+//! The operator moves the tip (or the handle) to the right in the image, up, into it, and back the same way. Each
+//! displacement in the frame of base, camera or leader corresponds to a known direction in the frame `view` (x right, y
+//! down, z into the image); the rotation between the two sets is Wahba's problem (Markley 1988). The product of both
+//! rotations is the argument of [`crate::kinematics::Mapping::new`]: "right" on the handle is then right in the image.
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -16,33 +17,31 @@ use super::{
     spread::{below, nearest_orthogonal, principal, radius_95},
 };
 
-/// Shortest move, m.
+/// Minimum length of a move, m: sixty times the noise of a tracker (0.25 mm), so that the direction is known within 2
+/// degrees.
 const LEAST_M: f64 = 0.015;
-/// Smallest root mean square of the moves' directions along the second and third axis of all; 0.58 for square ones.
+/// Minimum root mean square of the moves' directions along the second and third axis of all; 0.58 for orthogonal moves.
 const LEAST_SECOND: f64 = 0.3;
 const LEAST_THIRD: f64 = 0.2;
-/// A mirror explains the moves if its error is below this share of the rotation's.
+/// A mirror explains the moves if its error is below this fraction of the rotation's.
 const MIRROR_SHARE: f64 = 0.5;
 
-/// A move in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Move {
     Right,
     Up,
-    /// Away from the endoscope, into the picture.
     Deeper,
     Left,
     Down,
-    /// Towards the endoscope.
     Back,
 }
 
 impl Move {
-    /// The moves in the order in which they are asked for. They end where they began.
+    /// The moves in the order in which they are requested. They end where they began.
     pub const ALL: [Self; 6] = [Self::Right, Self::Up, Self::Deeper, Self::Left, Self::Down, Self::Back];
 
-    /// Its direction in the frame `view`, unit length.
+    /// Returns the direction in the frame `view`, unit length.
     pub fn in_view(self) -> Vector3<f64> {
         match self {
             Self::Right => Vector3::x(),
@@ -55,29 +54,29 @@ impl Move {
     }
 }
 
-/// Settings of the view's calibration. The samples are the ends of the moves of [`Move::ALL`], again and again, from a first place on.
+/// Settings of the view's calibration. The samples are a starting point and then the ends of the moves of
+/// [`Move::ALL`], repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// What moves: the tip (by flange or marker) or the handle.
+    /// The carrier that moves: the tip (by flange or marker) or the handle.
     pub carrier: Carrier,
     /// The point that moves, in the carrier's frame, m: the tip, or zero for the handle.
     pub point_in_carrier_m: Vector3<f64>,
-    /// Limits for the verdict: those of a person's hand.
+    /// Limits for the verdict, suited to a person's hand.
     pub limits: Limits,
 }
 
 impl View {
-    /// With the tip, by the arm: finds `base_from_view`.
+    /// Creates the settings for the tip and the arm: finds `base_from_view`.
     pub const fn by_arm(tip_in_flange_m: Vector3<f64>) -> Self {
         Self::of(Carrier::Flange, tip_in_flange_m)
     }
 
-    /// With the tip, by the tracker: finds `c_from_view`.
+    /// Creates the settings for the tip and the tracker: finds `c_from_view`.
     pub const fn by_tracker(tip_in_m_m: Vector3<f64>) -> Self {
         Self::of(Carrier::Marker, tip_in_m_m)
     }
 
-    /// With the handle: finds `leader_from_view`.
     pub fn by_handle() -> Self {
         Self::of(Carrier::Handle, Vector3::zeros())
     }
@@ -92,30 +91,30 @@ impl View {
         samples.iter().filter_map(|sample| Some((sample.pose(self.carrier)? * point).coords)).collect()
     }
 
-    /// The move that is asked for after these samples; `None` before the first place.
+    /// Returns the move to request after these samples; `None` before the starting point.
     pub fn asked(&self, taken: usize) -> Option<Move> {
         Some(Move::ALL[taken.checked_sub(1)? % Move::ALL.len()])
     }
 }
 
-/// How the picture is turned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewFound {
-    /// What moved: flange (`base_from_view`), marker (`c_from_view`) or handle (`leader_from_view`).
+    /// The carrier that moved: flange (`base_from_view`), marker (`c_from_view`) or handle (`leader_from_view`).
     pub carrier: Carrier,
-    /// Rotation from `view` to that frame.
+    /// Rotation from `view` to the carrier's frame.
     pub from_view_wxyz: [f64; 4],
 }
 
 impl ViewFound {
-    /// Rotation from `view` to the frame of base, camera or leader.
+    /// Returns the rotation from `view` to the frame of base, camera or leader.
     pub fn from_view(&self) -> UnitQuaternion<f64> {
         rotation(&self.from_view_wxyz)
     }
 
-    /// How the picture is turned against a marker `n` on the endoscope, `n_from_view`, from the marker's orientation while the moves
-    /// were recorded with the arm, and the hand-eye calibration. With it the view follows the endoscope.
+    /// Returns the orientation of the image relative to a marker `n` on the endoscope, `n_from_view`, from the marker's
+    /// orientation while the moves were recorded with the arm, and the hand-eye calibration. With it the view follows
+    /// the endoscope.
     pub fn n_from_view(
         &self,
         base_from_c: &UnitQuaternion<f64>,
@@ -172,7 +171,7 @@ impl Calibration for View {
         self.carrier
     }
 
-    /// Only the last place counts: the moves go back to the first.
+    /// Only the last position counts, because the moves return to the first.
     fn differs(&self, sample: &FrameSample, taken: &[FrameSample]) -> bool {
         let last = taken.last().map(|last| self.points(&[*last]));
         let here = self.points(&[*sample]);
@@ -185,13 +184,13 @@ impl Calibration for View {
     }
 
     fn fault(&self) -> Option<&'static str> {
-        (!finite(&self.point_in_carrier_m)).then_some("the point that moves is not finite")
+        (!finite(&self.point_in_carrier_m)).then_some("the moving point is not finite")
     }
 
     fn attempt(&self, samples: &[FrameSample]) -> FrameReport<ViewFound> {
         let points = self.points(samples);
         let ways = points.windows(2).zip(Move::ALL.iter().cycle());
-        // A way that is too short has no direction; the others keep their names.
+        // A displacement that is too short has no direction; the others keep their names.
         let row = |(ends, asked): (&[Vector3<f64>], &Move)| {
             let measured = (ends[1] - ends[0]).try_normalize(LEAST_M)?;
             Some(Row { in_view: asked.in_view(), measured })
@@ -219,7 +218,7 @@ impl Calibration for View {
         let turn = Rotation3::from_matrix_unchecked(found.model);
         let from_view_wxyz = wxyz(&UnitQuaternion::from_rotation_matrix(&turn));
         let value = ViewFound { carrier: self.carrier, from_view_wxyz };
-        // Each direction tells two turns; n directions spread over all axes have 2 n / 3 of each.
+        // Each direction determines two turns; n directions spread over all axes provide 2 n / 3 of each.
         let kept = found.kept.len();
         let freedom = (2 * kept).saturating_sub(3).max(1);
         let variance = found.squares_rad2() / freedom as f64 * 1.5 / kept as f64;
@@ -235,7 +234,7 @@ impl Calibration for View {
     }
 }
 
-/// Whether a reflection explains the moves far better than any rotation.
+/// Returns whether a reflection explains the moves far better than any rotation.
 fn is_mirrored(rows: &[Row]) -> bool {
     let squares = |sign| {
         let best = nearest_orthogonal(&moment(rows), sign)?;
@@ -244,7 +243,7 @@ fn is_mirrored(rows: &[Row]) -> bool {
     squares(-1.0).zip(squares(1.0)).is_some_and(|(mirror, turn)| mirror < MIRROR_SHARE * turn)
 }
 
-/// Pose with only a place, for a device without a wrist.
+/// A pose with only a position, for a device without a wrist.
 impl From<Vector3<f64>> for FrameSample {
     fn from(handle_m: Vector3<f64>) -> Self {
         let pose = Isometry3::from_parts(handle_m.into(), UnitQuaternion::identity());

@@ -23,37 +23,37 @@ pub const DEFAULT_TIME_CONSTANT_S: f64 = 0.002;
 #[derive(Clone, Debug)]
 pub struct Compensator {
     model: GravityModel,
-    /// Time constant of the low-pass, s; `None`: no filter.
+    /// Time constant of the low-pass, s; `None` without a filter.
     time_constant_s: Option<f64>,
     period_s: f64,
     field_m_s2: Option<Vector3<f64>>,
 }
 
 impl Compensator {
-    /// For samples of this nominal period (s). A time constant (s) that is zero, negative or not finite means no filter.
+    /// Creates a compensator for samples of this nominal period (s). A time constant (s) that is zero, negative or not
+    /// finite means no filter.
     pub fn new(model: GravityModel, time_constant_s: f64, period_s: f64) -> Self {
         // The arm's orientation has almost no noise; a filter would only add delay.
         let usable = model.source == Source::Imu && time_constant_s > 0.0 && time_constant_s.is_finite();
         Self { model, time_constant_s: usable.then_some(time_constant_s), period_s, field_m_s2: None }
     }
 
-    /// The model in use.
     pub const fn model(&self) -> &GravityModel {
         &self.model
     }
 
-    /// Resets the filter; the next sample initialises it.
     pub const fn reset(&mut self) {
         self.field_m_s2 = None;
     }
 
-    /// The same as [`step_after`](Self::step_after) for a sample one period after the last one.
+    /// Same as [`step_after`](Self::step_after) for a sample one period after the last one.
     pub fn step(&mut self, sample: &WristSample) -> Option<Wrench> {
         self.step_after(self.period_s, sample)
     }
 
-    /// Wrench of the sample, `dt_s` (s) after the last one, without gravity and bias (`s1`, N and Nm). `None`, and a reset of the filter, if the wrench
-    /// is not finite or the source of orientation is missing, not finite or defective.
+    /// Returns the wrench of the sample, `dt_s` (s) after the last one, without gravity and bias (`s1`, N and Nm).
+    /// Returns `None`, and resets the filter, if the wrench is not finite or the source of orientation is missing, not
+    /// finite or defective.
     pub fn step_after(&mut self, dt_s: f64, sample: &WristSample) -> Option<Wrench> {
         let share = self.time_constant_s.map_or(1.0, |time_constant_s| -libm::expm1(-dt_s / time_constant_s));
         let read = self.model.field_m_s2(sample).filter(|_| sample.raw.is_finite());
@@ -81,8 +81,8 @@ mod tests {
 
     const STEP_S: f64 = 1e-3;
 
-    /// Orientation of the sensor and position of the accelerometer (m, world) for a hand that tilts and carries the
-    /// tool.
+    /// Returns orientation of the sensor and position of the accelerometer (m, world) for a hand that tilts and carries
+    /// the tool.
     fn motion(t_s: f64) -> (UnitQuaternion<f64>, Vector3<f64>) {
         let wave = |hz: f64, phase: f64| (std::f64::consts::TAU * 0.4 * hz * t_s + phase).sin();
         let world_from_s1 =
@@ -90,12 +90,12 @@ mod tests {
         (world_from_s1, Vector3::new(wave(0.7, 0.0), wave(1.1, 1.0), wave(0.9, 2.0)) * 0.02)
     }
 
-    /// Second difference in time of a place.
+    /// Returns the second time difference of a position.
     fn acceleration_world(place: impl Fn(f64) -> Vector3<f64>, t_s: f64) -> Vector3<f64> {
         (place(t_s + STEP_S) - place(t_s) * 2.0 + place(t_s - STEP_S)) / (STEP_S * STEP_S)
     }
 
-    /// Readings of sensor and accelerometer in motion, including inertia.
+    /// Returns readings of sensor and accelerometer in motion, including inertia.
     fn moving_sample(tool: &mut Tool, t_s: f64) -> WristSample {
         let (world_from_s1, _) = motion(t_s);
         let mut sample = tool.sample(world_from_s1, 0.0, 0.0);

@@ -7,22 +7,24 @@
 use super::{pose::Row, solve::scaled_rotation};
 use nalgebra::Vector3;
 
-/// Share of the poses that must agree.
+/// Fraction of the poses that must agree.
 const AGREEING_SHARE: f64 = 0.7;
 /// Poses in one random set: fifteen equations for seven unknowns.
 const SET: usize = 5;
 /// Number of random sets: with 30 % bad poses, all of them contain a bad pose once in 1700 cases.
 const SETS: usize = 40;
-/// With fewer poses it cannot be determined which of them is wrong.
+/// With fewer poses it cannot be determined which of them is wrong: a random set of five must leave some to judge by.
 const LEAST_POSES: usize = 8;
 /// Number of standard deviations beyond which a pose is an outlier: 1 in 900 by chance for three axes.
 const DEVIATIONS: f64 = 4.0;
-/// Median length of a vector of three standard normal numbers.
+/// Median length of a vector of three standard normal numbers: the root of the median 2.366 of chi-squared with three
+/// degrees of freedom, so that the median error gives the standard deviation per axis.
 const MEDIAN_LENGTH: f64 = 1.538;
 /// A fixed seed: the same poses give the same result.
 const SEED: u64 = 0x6772_6176;
 
-/// Indices of the rows that agree, in rising order. `floor_n`: a residual below it is never an outlier, N.
+/// Returns the indices of the rows that agree, in increasing order. `floor_n`: a residual below it is never an outlier,
+/// N.
 pub(super) fn agreeing(rows: &[Row], floor_n: f64) -> Vec<usize> {
     let all: Vec<usize> = (0..rows.len()).collect();
     if rows.len() < LEAST_POSES {
@@ -47,7 +49,7 @@ pub(super) fn agreeing(rows: &[Row], floor_n: f64) -> Vec<usize> {
     chosen
 }
 
-/// The best `least` rows under the random set whose `least`-th residual is the smallest.
+/// Returns the best `least` rows under the random set whose `least`-th residual is the smallest.
 fn start(rows: &[Row], least: usize) -> Option<Vec<usize>> {
     let mut rng = fastrand::Rng::with_seed(SEED);
     let mut best: Option<(f64, Vec<usize>)> = None;
@@ -64,7 +66,7 @@ fn start(rows: &[Row], least: usize) -> Option<Vec<usize>> {
     Some(chosen)
 }
 
-/// Length of every row's force residual (N) under the physical model of the chosen rows.
+/// Returns the length of every row's force residual (N) under the physical model of the chosen rows.
 fn residuals(rows: &[Row], chosen: &[usize]) -> Option<Vec<f64>> {
     let subset: Vec<Row> = chosen.iter().map(|&i| rows[i]).collect();
     let (mass_kg, s1_from_source) = scaled_rotation(&subset)?;

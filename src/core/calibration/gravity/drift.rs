@@ -1,12 +1,12 @@
-//! Checks after every start whether a saved calibration still holds, by the force that remains at rest. A state machine
-//! without a clock.
+//! Checks after every start whether a saved calibration is still valid, by the force that remains at rest. A state
+//! machine without a clock.
 //!
 //! Takes every sample of the wrist sensor with the time (s) and whether the loop is idle; returns a [`Drift`]. It waits
 //! for two seconds; then the first still interval decides. While nothing touches the tool, the force without gravity
 //! and bias is zero. A bias does not change within seconds, but the force of a hand does, so a bad verdict needs three
 //! times as long an interval as a good one. An object that rests motionless on the tool cannot be distinguished from a
-//! changed bias: the message of a bad verdict says so, and a later good interval revokes it. Once the loop has been
-//! engaged, nothing is judged any more, because the tool may touch tissue.
+//! changed bias: the message of a bad verdict says so, and a later good interval revokes the verdict. Once the loop has
+//! been engaged, the check ends, because the tool may touch tissue.
 
 use super::{
     GravityModel,
@@ -16,41 +16,34 @@ use crate::frames::WristSample;
 
 /// After a start, the filters of sensor and driver need this time to settle, s.
 const SETTLE_S: f64 = 2.0;
-/// A bad verdict needs this many consecutive still intervals.
+/// A bad verdict needs this many consecutive still intervals: a hand at the tool sways, and a bias does not
+/// (`docs/calibration.md`).
 const STRETCHES_FOR_BAD: f64 = 3.0;
 /// Without a verdict after this time, the check reports why, s; a later still interval still decides.
 const TIMEOUT_S: f64 = 7.0;
 
-/// Why a calibration was not checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotChecked {
     /// The sensor or the source of orientation is silent, or a number is not finite.
     NoSample,
-    /// The tool turns.
     Moving,
     /// The tool does not turn, but the force is not constant.
     Touched,
     /// The body wall touches the instrument.
     InTrocar,
-    /// The loop was engaged before there was a verdict.
     Engaged,
 }
 
 /// Result of the check since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drift {
-    /// Not enough data yet.
     Waiting,
-    /// The check is not possible.
     NotChecked(NotChecked),
-    /// The bias is unchanged.
     Fine {
-        /// Force remaining at rest, N.
         by_n: f64,
     },
     /// The bias has changed, unless something rests on the tool.
     Moved {
-        /// Force remaining at rest, N.
         by_n: f64,
     },
 }
@@ -74,19 +67,18 @@ impl DriftCheck {
         Self { model, limit_n, still, began_s: None, newest: None, fresh_s: f64::NEG_INFINITY, drift: Drift::Waiting }
     }
 
-    /// The present result.
     pub const fn drift(&self) -> Drift {
         self.drift
     }
 
-    /// Adds a sample (`None` while the sensor is silent) at time `t_s` (s, rising); returns the present result.
+    /// Adds a sample (`None` while the sensor is silent) at time `t_s` (s, increasing); returns the current result.
     pub fn step(&mut self, sample: Option<&WristSample>, idle: bool, t_s: f64) -> Drift {
         if matches!(self.drift, Drift::Fine { .. } | Drift::NotChecked(NotChecked::Engaged)) || !t_s.is_finite() {
             return self.drift;
         }
         let since_s = t_s - *self.began_s.get_or_insert(t_s);
         if !idle {
-            // A verdict is kept; without one there will be none any more.
+            // A verdict is kept; without a verdict the check ends here.
             self.give_up(NotChecked::Engaged);
             self.still.reset();
             return self.drift;
@@ -124,7 +116,7 @@ impl DriftCheck {
         self.drift
     }
 
-    /// Judges an interval of this multiple of the still time.
+    /// Evaluates an interval of this multiple of the still time.
     fn judge(&mut self, share: f64) {
         let Some((wrench, field)) = self.still.mean() else { return };
         let by_n = (wrench.force_n - self.model.predict(&field).force_n).norm();

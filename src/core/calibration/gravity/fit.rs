@@ -17,16 +17,17 @@ use crate::{
 
 /// Up to this number of poses each is held out alone; above it, every tenth together.
 const LEAVE_ONE_OUT: usize = 20;
-/// The gain model is chosen automatically only with at least this many poses ...
+/// The gain model is chosen automatically only with at least this many poses, because it has twelve unknowns for the
+/// force, and the physical model seven.
 const GAIN_POSES: usize = 12;
-/// ... and only if its held-out error is below this share of the physical model's.
+/// The gain model is chosen automatically only if its held-out error is below this fraction of the physical model's.
 const GAIN_SHARE: f64 = 0.75;
 /// Errors below this are rounding and give no information, N.
 const ROUNDING_N: f64 = 1e-9;
-/// A mistake in the orientation is reported if correcting it leaves less than this share of the error.
+/// A mistake in the orientation is reported if correcting it leaves less than this fraction of the error; noise alone
+/// would leave about as much as before.
 const MISTAKE_SHARE: f64 = 0.5;
 
-/// Common settings of the fits.
 struct Frame {
     source: Source,
     imu_sign: i8,
@@ -41,7 +42,7 @@ impl Frame {
         Some(GravityModel { source: self.source, imu_sign: self.imu_sign, parameters })
     }
 
-    /// Indices of rows that agree with each other, in rising order.
+    /// Returns the indices of rows that agree with each other, in increasing order.
     fn agreeing(&self, rows: &[Row]) -> Vec<usize> {
         if self.drifts { (0..rows.len()).collect() } else { agreeing(rows, self.floor_n) }
     }
@@ -59,7 +60,7 @@ struct Data {
 
 impl Data {
     fn new(frame: &Frame, all: Vec<Row>) -> Self {
-        // Poses that drift apart are no outliers: each is as good as the others, and least squares uses all.
+        // Poses that drift apart are not outliers: each is as good as the others, and least squares uses all of them.
         let drift_n = drift_n(&all, frame.floor_n);
         let frame = &Frame { drifts: drift_n.is_some(), ..*frame };
         let inliers = frame.agreeing(&all);
@@ -70,12 +71,12 @@ impl Data {
     }
 }
 
-/// Fits all models to still poses and judges the chosen one. `Err` is returned only for invalid poses; poses that
-/// determine nothing, or fit badly, give a report with that verdict.
+/// Fits all models to still poses and evaluates the chosen one. `Err` is returned only for invalid poses; poses that do
+/// not determine a model, or fit badly, give a report with that verdict.
 ///
 /// # Errors
-/// [`GravityError`] for a pose with a number that is not finite, with another source of orientation than the first, or
-/// with a defective accelerometer; for no poses at all; for a sign that is neither 1 nor -1.
+/// [`GravityError`] for a pose with a non-finite number, a different source of orientation than the first, or a
+/// defective accelerometer; without any poses; for a sign that is neither 1 nor -1.
 ///
 /// A tool of 0.25 kg, held still in eight orientations that the arm reports:
 ///
@@ -133,7 +134,7 @@ pub fn fit(poses: &[Pose], settings: &Settings) -> Result<GravityReport, Gravity
     Ok(report)
 }
 
-/// Fits one model to the agreeing rows; errors on these and on held-out rows.
+/// Fits one model to the agreeing rows; computes its errors on these and on held-out rows.
 fn one_fit(kind: ModelKind, frame: &Frame, data: &Data) -> Option<ModelFit> {
     let model = frame.fit(kind, &data.kept)?;
     let fitted: Vec<_> = data.kept.iter().map(|row| errors(&model, row)).collect();
@@ -155,14 +156,15 @@ fn errors(model: &GravityModel, row: &Row) -> Wrench {
     Wrench { force_n: row.wrench.force_n - predicted.force_n, torque_nm: row.wrench.torque_nm - predicted.torque_nm }
 }
 
-/// Training rows of each fold. Agreement is determined again for each, so that a held-out row has no influence.
+/// Returns the training rows of each fold. Agreement is determined again for each fold, so that a held-out row has no
+/// influence.
 fn trainings(frame: &Frame, all: &[Row], folds: usize) -> Vec<Vec<Row>> {
     let training = |fold| -> Vec<Row> { (0..all.len()).filter(|i| i % folds != fold).map(|i| all[i]).collect() };
     let agreeing = |rows: Vec<Row>| frame.agreeing(&rows).into_iter().map(|i| rows[i]).collect();
     (0..folds).map(|fold| agreeing(training(fold))).collect()
 }
 
-/// Errors on held-out rows; outliers of the whole set are not counted.
+/// Returns the errors on held-out rows, without the outliers of the whole set.
 fn held_out(kind: ModelKind, frame: &Frame, data: &Data) -> Option<Vec<Wrench>> {
     let mut result = Vec::with_capacity(data.inliers.len());
     let folds = data.trainings.len();
@@ -182,7 +184,7 @@ fn weight(fits: &[ModelFit]) -> (Option<f64>, Option<[f64; 3]>) {
         .unwrap_or_default()
 }
 
-/// The requested model; by default the physical one, unless the gain model is clearly better on held-out poses.
+/// Returns the requested model; by default the physical one, unless the gain model is clearly better on held-out poses.
 fn chosen(report: &GravityReport, settings: &Settings) -> Option<ModelKind> {
     if let Some(kind) = settings.model {
         return report.fit_of(kind).map(|fit| fit.kind);
@@ -209,7 +211,7 @@ fn judge(
         return (Verdict::InsufficientMotion, reason);
     }
     match report.chosen_fit() {
-        None => (Verdict::InsufficientMotion, "the poses determine no model; take more poses".to_owned()),
+        None => (Verdict::InsufficientMotion, "the poses do not determine a model; record more poses".to_owned()),
         Some(fit) => match weightless(report, limits).or_else(|| poor(report, fit, limits)) {
             Some(reason) => (Verdict::PoorData, drift_n.map_or(reason, drifted)),
             None => (Verdict::Accepted, accepted(report, fit)),
@@ -226,11 +228,14 @@ fn drifted(drift_n: f64) -> String {
 fn insufficient(report: &GravityReport, limits: &Limits) -> Option<String> {
     let kept = report.poses - report.outliers.len();
     if kept < limits.least_poses {
-        return Some(format!("{kept} usable poses, at least {} are needed; take more poses", limits.least_poses));
+        return Some(format!(
+            "only {kept} poses are usable, at least {} are required; record more poses",
+            limits.least_poses
+        ));
     }
     if report.coverage < limits.least_coverage {
         return Some(format!(
-            "the poses cover {:.2} of all directions of gravity, at least {:.2} is needed; tilt the tool further",
+            "the poses cover {:.2} of all directions of gravity (minimum {:.2}); tilt the tool further",
             report.coverage, limits.least_coverage
         ));
     }
@@ -244,8 +249,8 @@ fn insufficient(report: &GravityReport, limits: &Limits) -> Option<String> {
     }
 }
 
-/// The force must follow gravity by more than its noise. A sensor that repeats one reading fits every model with a mass
-/// of zero.
+/// Checks that the force follows gravity by more than its noise: a sensor that repeats one reading fits every model
+/// with a mass of zero.
 fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
     let fit = report.fit_of(ModelKind::Physical)?;
     let weight_n = report.mass_kg? * GRAVITY_M_S2;
@@ -255,7 +260,7 @@ fn weightless(report: &GravityReport, limits: &Limits) -> Option<String> {
     let seen = weight_n >= least_n;
     (!seen).then(|| {
         format!(
-            "no weight is seen: the force follows gravity by {weight_n:.3} N, at least {least_n:.3} N is needed beside its noise; \
+            "no weight was measured: the force follows gravity by {weight_n:.3} N, at least {least_n:.3} N is required above its noise; \
              check that the sensor sends new readings in N and that the tool hangs on it"
         )
     })
@@ -277,7 +282,7 @@ fn poor(report: &GravityReport, fit: &ModelFit, limits: &Limits) -> Option<Strin
     }
     if share > limits.most_outliers {
         return Some(format!(
-            "{} of {} poses do not agree with the others; was the tool touched?",
+            "{} of {} poses do not agree with the others; repeat them without touching the tool",
             report.outliers.len(),
             report.poses
         ));
@@ -299,7 +304,7 @@ fn accepted(report: &GravityReport, fit: &ModelFit) -> String {
     )
 }
 
-/// A common mistake in the orientation, reported if correcting it explains well-distributed poses far better. With a
+/// Returns a common mistake in the orientation if correcting it explains well-distributed poses far better. With a
 /// wrong sign the best fit is a reflection, which is not a possible mounting.
 fn mistake(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &Frame) -> Option<&'static str> {
     let limits = &settings.limits;
@@ -315,7 +320,7 @@ fn mistake(report: &GravityReport, poses: &[Pose], settings: &Settings, frame: &
         Source::Arm => &[
             (
                 Reading::InverseRotation,
-                "the inverse orientations fit: the file holds sensor from base, give base from sensor",
+                "the inverse orientations fit: the file contains sensor from base; use base from sensor",
             ),
             (Reading::Opposite, "the forces point opposite to gravity; check the signs of the force columns"),
         ],

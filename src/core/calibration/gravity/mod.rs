@@ -7,7 +7,7 @@
 //! `f0`. Drift of the sensor after the calibration is not covered; the drift check detects it.
 //!
 //! Three models are fitted to the same still poses and compared on held-out poses: the physical one above, one with a
-//! free 3x3 gain in place of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
+//! free 3x3 gain instead of `m R`, and the paper's, linear in sine and cosine of roll and pitch.
 
 mod compensator;
 mod consensus;
@@ -41,31 +41,18 @@ pub use session::{GravitySession, Phase, SessionSettings};
 pub use still::StillSettings;
 pub use targets::{PoseTarget, TARGETS};
 
-/// Why poses could not be fitted. Messages count poses from 1.
+/// Reason why poses could not be fitted. Messages count poses from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GravityError {
-    #[error("there are no poses; record still poses of the tool first")]
+    #[error("no poses were given; record still poses of the tool first")]
     NoPoses,
-    /// A number is missing or not finite.
-    #[error("pose {} holds a number that is not finite; remove or repeat it", index + 1)]
-    NotFinite {
-        /// Index of the pose, from 0.
-        index: usize,
-    },
+    #[error("pose {} contains a non-finite number; remove or repeat it", index + 1)]
+    NotFinite { index: usize },
     /// Orientations from the accelerometer and from the arm are mixed.
-    #[error("pose {} takes its orientation from another source than the first; use one source for all", index + 1)]
-    MixedSources {
-        /// Index of the pose, from 0.
-        index: usize,
-    },
-    #[error("pose {}: the accelerometer reads {norm_m_s2:.2} m/s^2 where gravity is 9.81; check it and its units", index + 1)]
-    DeadAccelerometer {
-        /// Index of the pose, from 0.
-        index: usize,
-        /// Magnitude of its reading, m/s^2.
-        norm_m_s2: f64,
-    },
-    /// The sign must be +1 or -1.
-    #[error("the accelerometer's sign is {sign}; give 1 or -1")]
+    #[error("pose {} has a different source of orientation than the first pose; use one source for all", index + 1)]
+    MixedSources { index: usize },
+    #[error("pose {}: the accelerometer reads {norm_m_s2:.2} m/s^2 instead of 9.81; check the sensor and its units", index + 1)]
+    DeadAccelerometer { index: usize, norm_m_s2: f64 },
+    #[error("the accelerometer's sign {sign} is invalid; use 1 or -1")]
     BadSign { sign: i8 },
 }

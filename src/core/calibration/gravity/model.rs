@@ -5,21 +5,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::frames::{GRAVITY_M_S2, Wrench, WristSample};
 
-/// Below this value, m/s^2, the accelerometer is defective or the arm is in free fall, and no orientation can be
+/// Below this value, m/s^2, the accelerometer is defective or the arm is in free fall, and the orientation cannot be
 /// computed.
 pub(super) const LEAST_FIELD_M_S2: f64 = 1.0;
 
-/// Source of the direction of gravity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// The accelerometer inside the sensor.
     Imu,
-    /// The arm's kinematics.
     Arm,
 }
 
-/// Type of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelKind {
@@ -32,10 +28,9 @@ pub enum ModelKind {
 }
 
 impl ModelKind {
-    /// All types, in the order of a report.
     pub const ALL: [Self; 3] = [Self::Physical, Self::Gain, Self::Paper];
 
-    /// The model's name in one word.
+    /// Returns the model's name in one word.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Physical => "physical",
@@ -55,19 +50,17 @@ pub struct TorqueParameters {
     pub bias_nm: [f64; 3],
 }
 
-/// Parameters of a model. Torque is `None` if the poses had no torque; the torque is then not changed.
+/// Parameters of a model. Torque is `None` if the poses had no torque; torque is then not compensated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Parameters {
     /// `f = m R u + f0`.
     Physical {
-        /// Mass of the tool, kg.
         mass_kg: f64,
         /// `R` from the source's frame to `s1`, unit quaternion `w, x, y, z`.
         s1_from_source_wxyz: [f64; 4],
         /// `f0`, N.
         bias_n: [f64; 3],
-        /// Parameters of the torque.
         torque: Option<TorqueParameters>,
     },
     /// `f = G u + f0`.
@@ -76,23 +69,16 @@ pub enum Parameters {
         gain_kg: [[f64; 3]; 3],
         /// `f0`, N.
         bias_n: [f64; 3],
-        /// Parameters of the torque.
         torque: Option<TorqueParameters>,
     },
     /// `f = C (sin a, cos a, sin b, cos b, 1)`, one row per axis, N.
-    Paper {
-        /// Coefficients of the force, N.
-        force_n: [[f64; 5]; 3],
-        /// Coefficients of the torque, Nm.
-        torque_nm: Option<[[f64; 5]; 3]>,
-    },
+    Paper { force_n: [[f64; 5]; 3], torque_nm: Option<[[f64; 5]; 3]> },
 }
 
 /// A gravity model and the source of orientation that it was fitted with.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityModel {
-    /// Source of its orientation.
     pub source: Source,
     /// +1 if the accelerometer points away from the ground at rest (as most do), -1 if it points towards it.
     pub imu_sign: i8,
@@ -101,7 +87,6 @@ pub struct GravityModel {
 }
 
 impl GravityModel {
-    /// Type of the model.
     pub const fn kind(&self) -> ModelKind {
         match self.parameters {
             Parameters::Physical { .. } => ModelKind::Physical,
@@ -110,7 +95,7 @@ impl GravityModel {
         }
     }
 
-    /// What is wrong with parameters that were read from a file; `None` if nothing is.
+    /// Returns the fault of parameters that were read from a file; `None` if they are valid.
     pub fn fault(&self) -> Option<&'static str> {
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         let torque_fits = |torque: &Option<TorqueParameters>| {
@@ -130,14 +115,14 @@ impl GravityModel {
         };
         match (self.imu_sign, all_finite, plausible) {
             (-1 | 1, true, true) => None,
-            (-1 | 1, true, false) => Some("the mass is negative or the rotation is no unit quaternion"),
+            (-1 | 1, true, false) => Some("the mass is negative or the rotation is not a unit quaternion"),
             (-1 | 1, false, _) => Some("a number of the gravity model is not finite"),
             _ => Some("imu_sign is neither 1 nor -1"),
         }
     }
 
-    /// Gravity vector in the source's frame for this sample, m/s^2; `None` if the source is missing, not finite or
-    /// defective.
+    /// Returns the gravity vector in the source's frame for this sample, m/s^2; `None` if the source is missing, not
+    /// finite or defective.
     pub fn field_m_s2(&self, sample: &WristSample) -> Option<Vector3<f64>> {
         let field = match self.source {
             Source::Imu => sample.acceleration_m_s2? * -f64::from(self.imu_sign),
@@ -146,12 +131,12 @@ impl GravityModel {
         (field.iter().all(|x| x.is_finite()) && field.norm() >= LEAST_FIELD_M_S2).then_some(field)
     }
 
-    /// Wrench of gravity and bias on the sensor for this gravity vector (m/s^2, source's frame): force N and torque Nm
-    /// in `s1`.
+    /// Returns the wrench of gravity and bias on the sensor for this gravity vector (m/s^2, source's frame): force N
+    /// and torque Nm in `s1`.
     pub fn predict(&self, field_m_s2: &Vector3<f64>) -> Wrench {
         match &self.parameters {
             Parameters::Physical { mass_kg, s1_from_source_wxyz: [w, x, y, z], bias_n, torque } => {
-                // Not checked here: `fault` refuses one that does not have unit length.
+                // Not checked here: `fault` refuses a quaternion that does not have unit length.
                 let s1_from_source = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
                 loaded(s1_from_source * field_m_s2 * *mass_kg, bias_n, torque.as_ref())
             }
@@ -167,12 +152,12 @@ impl GravityModel {
     }
 }
 
-/// Gravity vector in `s1`, m/s^2, from the arm's orientation.
+/// Returns the gravity vector in `s1`, m/s^2, from the arm's orientation.
 pub(super) fn arm_field_m_s2(world_from_s1: &UnitQuaternion<f64>) -> Vector3<f64> {
     world_from_s1.inverse_transform_vector(&Vector3::new(0.0, 0.0, -GRAVITY_M_S2))
 }
 
-/// The paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch
+/// Returns the paper's row `(sin a, cos a, sin b, cos b, 1)` with roll `a = atan2(ay, az)` and pitch
 /// `b = atan2(-ax, sqrt(ay^2 + az^2))` of `-u`. Sines and cosines are computed as ratios, without the angles.
 pub(super) fn paper_row(field_m_s2: &Vector3<f64>) -> SVector<f64, 5> {
     let support = -field_m_s2;
@@ -184,7 +169,6 @@ pub(super) fn paper_row(field_m_s2: &Vector3<f64>) -> SVector<f64, 5> {
     SVector::from([sin_a, cos_a, sin_b, cos_b, 1.0])
 }
 
-/// A matrix from its rows.
 pub(super) fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| rows[i][j])
 }

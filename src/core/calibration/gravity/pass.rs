@@ -3,24 +3,22 @@
 use super::Compensator;
 use crate::frames::WristSample;
 
-/// Width of a bin of the histogram of forces, N.
+/// Bin width of the force histogram, N: below the noise of a good sensor (0.01 to 0.05 N), so that it does not blur the
+/// result.
 const BIN_N: f64 = 0.01;
 const BINS: usize = 500;
 
-/// Result of the verification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassResult {
-    /// Number of samples.
     pub samples: u64,
     /// Mean magnitude of the gravity-free force, N; near zero if nothing is touched.
     pub mean_n: f64,
     /// 95th percentile of the magnitude, N (resolution 0.01 N; 5 N stands for anything larger).
     pub p95_n: f64,
-    /// Largest angle of the direction of gravity from that at the start, rad.
+    /// Largest angle of the direction of gravity from the initial one, rad.
     pub tilt_rad: f64,
     /// Whether the error is small enough, over enough tilt.
     pub passed: bool,
-    /// The reason, in a sentence.
     pub reason: &'static str,
 }
 
@@ -37,7 +35,7 @@ pub struct CheckPass {
 }
 
 impl CheckPass {
-    /// A verification in which the 95th percentile must stay below `limit_n` (N).
+    /// Creates a verification in which the 95th percentile must stay below `limit_n` (N).
     pub fn new(compensator: Compensator, limit_n: f64) -> Self {
         Self { compensator, limit_n, first: None, tilt_rad: 0.0, sum_n: 0.0, samples: 0, bins: Box::new([0; BINS]) }
     }
@@ -54,7 +52,7 @@ impl CheckPass {
         Some(force_n)
     }
 
-    /// Result so far; passing needs one second of samples and 45 degrees of tilt.
+    /// Returns the result so far; passing needs one second of samples and 45 degrees of tilt.
     pub fn result(&self) -> PassResult {
         let wanted = (self.samples as f64 * 0.95).ceil() as u64;
         let mut seen = 0;

@@ -5,7 +5,6 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::{GravityError, Source, model::arm_field_m_s2};
 use crate::frames::Wrench;
 
-/// Orientation of the sensor in a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Orientation {
     /// Mean reading of the accelerometer at rest (`imu`), m/s^2.
@@ -21,12 +20,10 @@ pub struct Pose {
     pub wrench: Wrench,
     /// Whether the torque was measured; otherwise it is ignored.
     pub has_torque: bool,
-    /// Orientation of the sensor.
     pub orientation: Orientation,
 }
 
 impl Pose {
-    /// Source of its orientation.
     pub const fn source(&self) -> Source {
         match self.orientation {
             Orientation::Imu(_) => Source::Imu,
@@ -50,7 +47,7 @@ pub(super) enum Reading {
     InverseRotation,
 }
 
-/// The rows of these poses under this interpretation.
+/// Returns the rows of these poses under this interpretation.
 pub(super) fn rows(poses: &[Pose], imu_sign: i8, reading: Reading) -> Vec<Row> {
     let field = |pose: &Pose| match (pose.orientation, reading) {
         (Orientation::Imu(acceleration), Reading::Opposite) => acceleration * f64::from(imu_sign),

@@ -1,5 +1,5 @@
-//! Checks before the first pose: whether the sensor delivers, at which rate, with how much noise, and whether it is
-//! still. A state machine without a clock.
+//! Checks before the first pose: does the sensor deliver data, at which rate, with how much noise, and is it still? A
+//! state machine without a clock.
 //!
 //! Takes the newest sample of every tick with its time (s); the result is updated twice a second. If the sensor is
 //! silent, the loop continues with its last sample, so a sample that equals the previous one in every number does not
@@ -13,47 +13,46 @@ use crate::frames::{GRAVITY_M_S2, WristSample};
 
 /// Length of a measuring interval, s.
 const BLOCK_S: f64 = 0.5;
-/// If ticks are further apart than this, the screen has missed some; that time does not count as silence of the sensor,
-/// s.
+/// If ticks are further apart than this, the screen has missed some ticks; that time does not count as silence of the
+/// sensor, s.
 const HOLE_S: f64 = 0.020;
-/// Smallest rate of samples as a share of the loop's rate: a lower one would be felt as steps and lag.
+/// Minimum rate of samples as a fraction of the loop's rate: a lower rate would be felt as steps and lag.
 const RATE_SHARE: f64 = 0.9;
-/// Largest noise per sample and axis at which a still tool is recognised as still: the mean over 20 ms at 1 kHz must
+/// Maximum noise per sample and axis at which a still tool is recognised as still: the mean over 20 ms at 1 kHz must
 /// stay within [`super::StillSettings::force_n`] (0.08 N) at 3.5 standard deviations. A good sensor has 0.01 to 0.05 N.
 const FORCE_NOISE_N: f64 = 0.10;
-/// The same for the accelerometer and [`super::StillSettings::field_m_s2`], m/s^2. A good one has 0.01 to 0.05.
+/// Maximum noise of the accelerometer, for [`super::StillSettings::field_m_s2`], m/s^2. A good accelerometer has 0.01
+/// to 0.05.
 const ACCELERATION_NOISE_M_S2: f64 = 0.12;
-/// Largest relative deviation of the accelerometer's reading at rest from gravity.
+/// Maximum relative deviation of the accelerometer's reading at rest from gravity: a larger deviation cannot be the
+/// local gravity, which varies by 0.5 % over the earth, and means a wrong unit or a damaged device.
 const GRAVITY_SHARE: f64 = 0.05;
-/// Stillness is judged in steps of 20 ms, and its first sample is a tick late: a rest may be measured too short by
+/// Stillness is evaluated in steps of 20 ms, and its first sample is a tick late: a rest may be measured too short by
 /// this, s.
 const REST_ROUNDING_S: f64 = 0.045;
 /// A swinging tool is still for a moment at its turning points, but not for this long, s.
 const REST_S: f64 = 0.2;
-/// Fewest samples of an interval for an estimate of the noise.
+/// Minimum number of samples in an interval for an estimate of the noise: the standard deviation is then known within
+/// about 16 % (`1 / sqrt(2 n)`), so that a good sensor is not refused.
 const SAMPLES_MIN: f64 = 20.0;
 
-/// State of one check before the first pose.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckState {
     /// Not enough samples yet, or another check must pass first.
     Waiting,
-    /// Passed.
     Good,
-    /// Failed.
     Bad {
         /// The cause, with the measured value.
         cause: String,
-        /// What the operator can do about it.
+        /// The remedy, for the operator.
         cure: &'static str,
     },
 }
 
-/// One check before the first pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     pub name: &'static str,
-    /// Measured value, for the screen; empty if there is none.
+    /// Measured value, for the screen; empty without a value.
     pub measured: String,
     pub state: CheckState,
 }
@@ -71,7 +70,7 @@ fn bad(cause: impl Into<String>, cure: &'static str) -> CheckState {
 /// Measured value as text, and state of the check.
 type Finding = (String, CheckState);
 
-/// Deviation of vectors from their mean, and from one to the next.
+/// Deviation of vectors from their mean, and between consecutive ones.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spread {
     first: Vector3<f64>,
@@ -102,20 +101,18 @@ impl Spread {
         self.first + self.sum / self.count.max(1.0)
     }
 
-    /// Standard deviation per axis.
     fn deviation(&self) -> Vector3<f64> {
         let mean = self.sum / self.count.max(1.0);
         (self.squares / self.count.max(1.0) - mean.component_mul(&mean)).map(|variance| variance.max(0.0).sqrt())
     }
 
-    /// Standard deviation of white noise that has these differences from sample to sample; slow motion does not affect
-    /// it.
+    /// Returns the standard deviation of white noise with these differences between samples; slow motion does not
+    /// affect it.
     fn roughness(&self) -> Vector3<f64> {
         (self.steps / (2.0 * (self.count - 1.0).max(1.0))).map(f64::sqrt)
     }
 }
 
-/// Data of a measuring interval.
 #[derive(Clone, Copy, Debug, Default)]
 struct Block {
     span_s: f64,
@@ -123,7 +120,6 @@ struct Block {
     repeated: u32,
     poisoned: u32,
     oriented: u32,
-    /// Whether the tool was still all the time.
     still: bool,
     force_n: Spread,
     acceleration_m_s2: Spread,
@@ -134,11 +130,11 @@ impl Block {
         let state = if self.oriented == self.fresh {
             CheckState::Good
         } else if use_arm {
-            bad("the arm does not tell how the sensor is turned", "connect the arm, or take the accelerometer")
+            bad("the arm does not report the sensor's orientation", "connect the arm, or use the accelerometer")
         } else {
             bad(
                 "the accelerometer sends no data",
-                "sensors of the first generation have none: take the orientation from the arm",
+                "sensors of the first generation have no accelerometer: use the arm's orientation",
             )
         };
         (String::new(), state)
@@ -154,7 +150,7 @@ impl Block {
         let state = if off < GRAVITY_SHARE {
             CheckState::Good
         } else {
-            bad(format!("{measured} where gravity is 9.81 m/s^2"), "hold it still; check its range and units")
+            bad(format!("{measured} instead of 9.81 m/s^2"), "hold it still; check its range and units")
         };
         (measured, state)
     }
@@ -183,7 +179,7 @@ impl Block {
 pub struct Precheck {
     settings: SessionSettings,
     still: Still,
-    /// How long the tool has been still, s; `None` while it moves or is not known.
+    /// Time for which the tool has been still, s; `None` while it moves or before this is known.
     rested_s: Option<f64>,
     newest: Option<WristSample>,
     last_s: f64,
@@ -199,7 +195,7 @@ impl Precheck {
         Self { settings, still, rested_s: None, newest: None, last_s: f64::NAN, block, measured: None }
     }
 
-    /// Adds the sample of one tick, `None` if there is none, at time `t_s` (s, rising). Allocates nothing.
+    /// Adds the sample of one tick, `None` if there is none, at time `t_s` (s, increasing). Allocates nothing.
     pub fn step(&mut self, sample: Option<&WristSample>, t_s: f64) {
         let step_s = t_s - self.last_s;
         self.last_s = t_s;
@@ -244,7 +240,7 @@ impl Precheck {
         }
     }
 
-    /// State of all checks, for a loop of this rate (Hz). Allocates; for the screen's thread.
+    /// Returns the state of all checks, for a loop of this rate (Hz). Allocates, so call it on the screen's thread.
     pub fn checks(&self, rate_hz: f64) -> Vec<Check> {
         let block = self.measured.unwrap_or_default();
         let told = |finding: Finding| if block.fresh == 0 { (String::new(), CheckState::Waiting) } else { finding };
@@ -261,7 +257,6 @@ impl Precheck {
         lines.into_iter().map(|(name, (measured, state))| Check::of(name, measured, state)).collect()
     }
 
-    /// Whether all checks have passed.
     pub fn passed(&self, rate_hz: f64) -> bool {
         self.checks(rate_hz).iter().all(|check| check.state == CheckState::Good)
     }
@@ -272,15 +267,15 @@ impl Precheck {
             Some(Block { poisoned, fresh, repeated, .. }) if poisoned > 0 => {
                 let all = poisoned + fresh + repeated;
                 bad(
-                    format!("{poisoned} of {all} samples hold a number that is not finite"),
-                    "check the cable and the sensor's own status, then start its driver again",
+                    format!("{poisoned} of {all} samples contain a non-finite number"),
+                    "check the cable and the sensor's own status, then restart its driver",
                 )
             }
             Some(Block { fresh: 0, repeated: 0, .. }) => {
-                bad("no sample comes from it", "check its power, its cable and its address")
+                bad("no samples arrive", "check its power, its cable and its address")
             }
             Some(Block { fresh: 0, .. }) => {
-                bad("it hangs: the same reading over and over", "switch it off and on, then start its driver again")
+                bad("the sensor repeats the same reading", "switch it off and on, then restart its driver")
             }
             Some(_) => CheckState::Good,
         };
@@ -306,16 +301,14 @@ impl Precheck {
         let state = match (self.rested_s, self.still.is_still()) {
             (Some(rested_s), _) if rested_s >= REST_S => CheckState::Good,
             (Some(_), _) | (None, None) => CheckState::Waiting,
-            (None, Some(_)) => {
-                bad("force or orientation does not stand still", "let go of the tool and lay the arm to rest")
-            }
+            (None, Some(_)) => bad("force or orientation is not still", "release the tool and bring the arm to rest"),
         };
         (String::new(), state)
     }
 }
 
-/// Noise of the worst axis. While the tool moves, only the part that motion cannot explain is reported, and only if it
-/// is too large by itself: noise that looks like motion must not be hidden by it.
+/// Evaluates the noise of the worst axis. While the tool moves, only the part that motion cannot explain is evaluated,
+/// and reported only if it is too large by itself: motion must not hide noise that looks like motion.
 fn noise(spread: &Spread, still: bool, limit: f64, unit: &str, cure: &'static str) -> Finding {
     let deviation = spread.deviation().max();
     let roughness = spread.roughness().max();

@@ -1,4 +1,4 @@
-//! Sensors with one defect each: the right line must report it, with cause and cure.
+//! Sensors with one defect each: the right line must report it, with cause and remedy.
 
 use nalgebra::UnitQuaternion;
 
@@ -7,7 +7,7 @@ use crate::calibration::gravity::{SessionSettings, tests::Tool};
 
 const RATE_HZ: f64 = 1000.0;
 
-/// One and a half seconds of a still sensor, modified by `edit` (which is given the tick's number).
+/// Returns one and a half seconds of a still sensor, modified by `edit` (whose argument is the tick's number).
 fn seen(
     settings: SessionSettings,
     mut edit: impl FnMut(u32, &mut Tool, WristSample) -> Option<WristSample>,
@@ -27,7 +27,7 @@ fn line(precheck: &Precheck, name: &str) -> Check {
     precheck.checks(RATE_HZ).into_iter().find(|check| check.name == name).unwrap()
 }
 
-/// Asserts that the line of this name has failed, and that its cause and cure contain these words.
+/// Asserts that the line of this name has failed, and that its cause and remedy contain these texts.
 fn assert_bad(precheck: &Precheck, name: &str, in_cause: &str, in_cure: &str) {
     let CheckState::Bad { cause, cure } = line(precheck, name).state else {
         panic!("{name} is not bad: {:?}", precheck.checks(RATE_HZ));
@@ -56,7 +56,7 @@ fn a_sensor_that_is_silent_hangs_or_is_slow_is_told_apart() {
     let hung = seen(settings, move |_, _, sample| Some(*first.get_or_insert(sample)));
     assert_bad(&hung, "sensor", "same reading", "off and on");
     assert_bad(&hung, "rate", "0 Hz of the loop's 1000 Hz", "output rate");
-    assert_eq!(line(&hung, "force noise").state, CheckState::Waiting, "nothing new, nothing told");
+    assert_eq!(line(&hung, "force noise").state, CheckState::Waiting, "nothing new, nothing reported");
     let mut held = None;
     let slow = seen(settings, move |tick, _, sample| {
         if tick % 2 == 0 {
@@ -116,7 +116,12 @@ fn a_dead_axis_a_wrong_unit_and_a_missing_source_are_named() {
         sample.acceleration_m_s2 = None;
         Some(sample)
     };
-    assert_bad(&seen(settings, |_, _, sample| without(sample)), "orientation", "accelerometer", "from the arm");
+    assert_bad(
+        &seen(settings, |_, _, sample| without(sample)),
+        "orientation",
+        "accelerometer",
+        "the arm's orientation",
+    );
     let by_arm = seen(SessionSettings { use_arm: true, ..settings }, |_, _, sample| without(sample));
     assert!(by_arm.passed(RATE_HZ), "{:?}", by_arm.checks(RATE_HZ));
     let lost = seen(SessionSettings { use_arm: true, ..settings }, |_, _, mut sample| {
@@ -132,7 +137,7 @@ fn a_hand_on_the_tool_is_no_noise() {
         sample.raw.force_n.x += 0.8 * (f64::from(tick) * 0.03).sin();
         Some(sample)
     });
-    assert_bad(&swayed, "stillness", "does not stand still", "let go");
+    assert_bad(&swayed, "stillness", "is not still", "release the tool");
     assert_eq!(line(&swayed, "force noise").state, CheckState::Waiting);
     assert_eq!(line(&swayed, "sensor").state, CheckState::Good);
 }

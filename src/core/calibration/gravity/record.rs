@@ -1,4 +1,4 @@
-//! The file content of a gravity calibration: the model, what it belongs to, and its quality.
+//! File content of a gravity calibration: the model, the devices that it belongs to, and its quality.
 
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 
@@ -9,29 +9,24 @@ use crate::calibration::{Judgement, Record, RecordHead, Residuals};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GravityKind {
-    /// `kind = "gravity"`.
     #[default]
     Gravity,
 }
 
-/// A gravity calibration as written to a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityRecord {
     pub kind: GravityKind,
-    /// Sensor, tool and date.
     #[serde(flatten)]
     pub head: RecordHead,
-    /// Whether it may be used.
     #[serde(flatten)]
     pub judgement: Judgement,
-    /// Number of still poses.
     pub poses: usize,
     /// Indices of the poses left out as outliers, from 0.
     pub outliers: Vec<usize>,
-    /// Share of all directions of gravity within 45 degrees of a pose, 0 to 1.
+    /// Fraction of all directions of gravity within 45 degrees of a pose, 0 to 1.
     pub coverage: f64,
-    /// Condition number of the design; absent if the poses determine nothing.
+    /// Condition number of the design; absent if the poses do not determine a model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<f64>,
     #[serde(deserialize_with = "sound")]
@@ -43,14 +38,14 @@ pub struct GravityRecord {
     pub torque_residuals: Option<Residuals>,
 }
 
-/// A smaller change of bias cannot be distinguished from the temperature drift of a sensor that has just started, N.
+/// A smaller change of bias cannot be distinguished from the temperature drift of a recently started sensor, N.
 const DRIFT_FLOOR_N: f64 = 0.10;
-/// Upper limit for any calibration, N.
+/// Upper limit for any calibration, N, because a model that errs by more would otherwise excuse any bias.
 const DRIFT_MOST_N: f64 = 0.50;
 
 impl GravityRecord {
-    /// Limit of the force remaining at rest above which the bias has changed, N: the model's error on held-out poses
-    /// plus a margin.
+    /// Returns the limit of the force remaining at rest above which the bias has changed, N: the model's error on
+    /// held-out poses plus a margin.
     pub fn drift_limit_n(&self) -> f64 {
         // Written so that NaN from a file gives the strict limit.
         (DRIFT_FLOOR_N + self.residuals.held_out.largest().max(0.0)).min(DRIFT_MOST_N)

@@ -5,31 +5,26 @@ use serde::{Deserialize, Serialize};
 use super::{GravityModel, GravityRecord, ModelKind, Source};
 use crate::calibration::{Judgement, RecordHead, Residuals, Verdict};
 
-/// Limits of the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Limits {
-    /// Smallest number of poses after removing outliers.
     pub least_poses: usize,
-    /// Smallest coverage, 0 to 1.
     pub least_coverage: f64,
-    /// Largest condition number of the design. 30 corresponds to a shaft tilted by about 30 degrees in all directions.
+    /// Maximum condition number of the design. 30 corresponds to a shaft tilted by about 30 degrees in all directions.
     pub most_condition: f64,
-    /// Largest share of outliers.
     pub most_outliers: f64,
-    /// Largest mean absolute error of the force on held-out poses, N ...
+    /// Maximum mean absolute error of the force on held-out poses, N; `mae_share` may allow more.
     pub mae_n: f64,
-    /// ... or this share of the tool's weight, whichever is larger: heavy tools bend their mounts.
+    /// Maximum of the same error as a fraction of the tool's weight, if that is larger: heavy tools bend their mounts.
     pub mae_share: f64,
-    /// Largest absolute error of the force on a held-out pose, N ...
+    /// Maximum absolute error of the force on a held-out pose, N; `max_share` may allow more.
     pub max_n: f64,
-    /// ... or this share of the tool's weight, whichever is larger.
+    /// Maximum of the same error as a fraction of the tool's weight, if that is larger.
     pub max_share: f64,
-    /// Largest mean absolute error of the torque on held-out poses, Nm.
+    /// Maximum mean absolute error of the torque on held-out poses, Nm.
     pub torque_mae_nm: f64,
-    /// Smallest weight of the tool, N ...
     pub least_weight_n: f64,
-    /// ... and as a multiple of the poses' disagreement: a sensor that delivers no readings shows no weight.
+    /// Minimum weight as a multiple of the poses' disagreement: a sensor that delivers no readings shows no weight.
     pub least_signal: f64,
     /// A pose whose force is within this of the model is never an outlier, N.
     pub outlier_floor_n: f64,
@@ -54,14 +49,12 @@ impl Default for Limits {
     }
 }
 
-/// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The model to use; `None` selects the physical one, or the gain model if the poses clearly support it.
     pub model: Option<ModelKind>,
     /// +1 if the accelerometer points away from the ground at rest, -1 if it points towards it.
     pub imu_sign: i8,
-    /// Limits of the verdict.
     pub limits: Limits,
 }
 
@@ -71,60 +64,49 @@ impl Default for Settings {
     }
 }
 
-/// One fitted model and its errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModelFit {
-    /// Type of the model.
     pub kind: ModelKind,
-    /// The model, fitted to all poses but the outliers.
+    /// The model, fitted to all poses except the outliers.
     pub model: GravityModel,
-    /// Errors of the force, N.
     pub force_n: Residuals,
     /// Errors of the torque, Nm, if all poses have torque.
     pub torque_nm: Option<Residuals>,
 }
 
-/// Result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GravityReport {
-    /// Whether the chosen model may be used.
     pub verdict: Verdict,
     /// The reason for the verdict, one sentence for the operator.
     pub reason: String,
     /// The chosen model; `None` if there are too few poses.
     pub chosen: Option<ModelKind>,
-    /// Number of poses given.
     pub poses: usize,
-    /// Source of their orientation.
     pub source: Source,
     /// Indices of poses that do not agree with the others, from 0; not used in the fit.
     pub outliers: Vec<usize>,
-    /// Share of all directions of gravity within 45 degrees of a pose, 0 to 1.
+    /// Fraction of all directions of gravity within 45 degrees of a pose, 0 to 1.
     pub coverage: f64,
-    /// Condition number of the design; `None` if the poses determine nothing.
+    /// Condition number of the design; `None` if the poses do not determine a model.
     pub condition: Option<f64>,
     /// Mass of the tool in the physical model, kg.
     pub mass_kg: Option<f64>,
-    /// Its centre of mass in `s1`, m.
+    /// Centre of mass of the tool in `s1`, m.
     pub com_m: Option<[f64; 3]>,
-    /// Number of folds of the cross-validation.
     pub folds: usize,
-    /// All models that could be fitted.
     pub fits: Vec<ModelFit>,
 }
 
 impl GravityReport {
-    /// The fit of one model.
     pub fn fit_of(&self, kind: ModelKind) -> Option<&ModelFit> {
         self.fits.iter().find(|fit| fit.kind == kind)
     }
 
-    /// The fit of the chosen model.
     pub fn chosen_fit(&self) -> Option<&ModelFit> {
         self.fit_of(self.chosen?)
     }
 
-    /// The record of the chosen model; `None` if there is none. `date` in ISO 8601, UTC.
+    /// Returns the record of the chosen model; `None` without a model. `date` in ISO 8601, UTC.
     pub fn record(&self, sensor: &str, tool: &str, date: &str) -> Option<GravityRecord> {
         let fit = self.chosen_fit()?;
         Some(GravityRecord {

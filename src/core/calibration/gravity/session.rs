@@ -15,25 +15,24 @@ use super::{
 };
 use crate::frames::WristSample;
 
-/// Number of poses from which on a new one is compared with the others.
+/// Number of poses above which a new pose is compared with the others: a fit of fewer is too uncertain to contradict a
+/// pose.
 const COMPARE_FROM: usize = 6;
-/// Largest angle between the directions of gravity of a pose and of its target, rad.
+/// Maximum angle between the directions of gravity of a pose and of its target, rad, because a person reaches a target
+/// only roughly, and the fit needs only that the poses differ.
 const REACH_RAD: f64 = 25.0 * std::f64::consts::PI / 180.0;
-/// Longest step that counts as time between two samples, s: in longer ones no pose was wanted.
+/// Longest step that counts as time between two samples, s: after a longer gap no pose was being recorded.
 const STEP_MAX_S: f64 = 0.1;
 
-/// Settings of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionSettings {
-    /// How the poses are fitted.
     pub fit: Settings,
-    /// Criteria for stillness.
     pub still: StillSettings,
     /// Use the orientation from the arm even if there is an accelerometer.
     pub use_arm: bool,
     /// A still pose whose force differs from the other poses' model by more than this was touched, N.
     pub touched_n: f64,
-    /// Smallest rotation of the tool between two poses, rad.
+    /// Minimum rotation of the tool between two poses, rad.
     pub turn_rad: f64,
 }
 
@@ -49,19 +48,15 @@ impl Default for SessionSettings {
     }
 }
 
-/// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// The sample is incomplete or contains a number that is not finite.
+    /// The sample is incomplete or contains a non-finite number.
     NoSample,
     /// The tool is moving, or still where the last pose was recorded.
     Moving,
-    /// Still, but not long enough yet.
     Recording {
-        /// Share of the required time, 0 to 1.
         share: f64,
     },
-    /// A pose was just recorded.
     Recorded {
         /// Its index, from 0.
         index: usize,
@@ -72,21 +67,21 @@ pub enum Phase {
     TakenHere,
     /// Still, but inconsistent with the other poses: take the hand off the tool and repeat the pose.
     Touched {
-        /// Difference, N.
         by_n: f64,
     },
 }
 
-/// Where a pose was recorded; only for guiding the operator, the fit uses the measurements.
+/// Orientation in which a pose was recorded; only for guiding the operator, because the fit uses the measurements.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// Index of the target for which it counts.
+    /// Index of the target for which the pose counts.
     target: Option<usize>,
     /// Direction of gravity in `s1` from the arm, if available.
     down_s1: Option<Vector3<f64>>,
 }
 
-/// Gravity vector (m/s^2, source's frame) from the source in the settings; `None` if it is missing or defective.
+/// Returns the gravity vector (m/s^2, source's frame) from the source in the settings; `None` if it is missing or
+/// defective.
 pub(super) fn field_of(settings: &SessionSettings, sample: &WristSample) -> Option<Vector3<f64>> {
     let field = if settings.use_arm {
         arm_field_m_s2(&sample.world_from_s1?)
@@ -96,7 +91,6 @@ pub(super) fn field_of(settings: &SessionSettings, sample: &WristSample) -> Opti
     (field.norm() >= super::model::LEAST_FIELD_M_S2).then_some(field)
 }
 
-/// A guided calibration.
 #[derive(Clone, Debug)]
 pub struct GravitySession {
     settings: SessionSettings,
@@ -111,7 +105,6 @@ pub struct GravitySession {
 }
 
 impl GravitySession {
-    /// A session without poses.
     pub fn new(settings: SessionSettings) -> Self {
         let still = Still::new(settings.still);
         let poses = Vec::with_capacity(64);
@@ -129,7 +122,6 @@ impl GravitySession {
         }
     }
 
-    /// Settings of the session.
     pub const fn settings(&self) -> &SessionSettings {
         &self.settings
     }
@@ -141,7 +133,7 @@ impl GravitySession {
         self.refit();
     }
 
-    /// Adds one sample at time `t_s` (s, rising); returns the state of the session.
+    /// Adds one sample at time `t_s` (s, increasing); returns the state of the session.
     pub fn step(&mut self, sample: &WristSample, t_s: f64) -> Phase {
         let phase = self.phase(sample, t_s);
         let step_s = self.stepped_s.replace(t_s).map_or(0.0, |before_s| t_s - before_s);
@@ -151,7 +143,7 @@ impl GravitySession {
         phase
     }
 
-    /// For how long something touched the tool while it was to be still, s; all poses together.
+    /// Returns the total time for which something touched the tool while it should have been still, s.
     pub const fn touched_s(&self) -> f64 {
         self.touched_s
     }
@@ -171,8 +163,8 @@ impl GravitySession {
             return Phase::TakenHere;
         }
         if let Some(by_n) = self.refused {
-            // It stays refused while the tool is held like this; a new attempt starts after the tool has moved or was
-            // released.
+            // The pose stays refused while the tool is held like this; a new attempt starts after the tool has moved or
+            // was released.
             if progress >= 1.0 {
                 self.still.reset();
                 self.refused = None;
@@ -226,7 +218,7 @@ impl GravitySession {
         self.running = usable.and_then(|report| report.chosen_fit().map(|fit| fit.model));
     }
 
-    /// The next target: the first one without a pose.
+    /// Returns the next target: the first one without a pose.
     pub fn target(&self) -> Option<PoseTarget> {
         self.next().map(|index| TARGETS[index])
     }
@@ -239,14 +231,13 @@ impl GravitySession {
         self.places.iter().any(|place| place.target == Some(index))
     }
 
-    /// Number of targets with a pose.
     pub fn targets_met(&self) -> usize {
         (0..TARGETS.len()).filter(|&index| self.is_met(index)).count()
     }
 
-    /// The target for which a pose recorded now counts: the nearest one within reach, by the arm's orientation. Without
-    /// an arm the sensor's mounting is not known yet, so the requested target is assumed; the fit's coverage decides in
-    /// the end.
+    /// Returns the target for which a pose recorded now counts: the nearest one within reach, by the arm's orientation.
+    /// Without an arm the sensor's mounting is not known yet, so the requested target is assumed; the coverage of the
+    /// fit decides in the end.
     fn place(&self) -> Place {
         let Some(down_s1) = self.down_s1() else { return Place { target: self.next(), down_s1: None } };
         let angle = |index: &usize| Vector3::from(TARGETS[*index].down_s1).angle(&down_s1);
@@ -254,23 +245,23 @@ impl GravitySession {
         Place { target: nearest.filter(|index| angle(index) < REACH_RAD), down_s1: Some(down_s1) }
     }
 
-    /// Present direction of gravity in `s1`, from the arm.
+    /// Returns the current direction of gravity in `s1`, from the arm.
     fn down_s1(&self) -> Option<Vector3<f64>> {
         arm_field_m_s2(&self.last?.world_from_s1?).try_normalize(1e-9)
     }
 
-    /// Directions of gravity in `s1` of the recorded poses, for a picture: from the arm, else the requested ones.
+    /// Returns the directions of gravity in `s1` of the recorded poses, for drawing: from the arm, else the requested
+    /// ones.
     pub fn taken_down_s1(&self) -> Vec<Vector3<f64>> {
         let known = |place: &Place| place.down_s1.or_else(|| Some(Vector3::from(TARGETS[place.target?].down_s1)));
         self.places.iter().filter_map(known).collect()
     }
 
-    /// Poses recorded so far.
     pub fn poses(&self) -> &[Pose] {
         &self.poses
     }
 
-    /// Removes a pose; `None` if there is no such pose.
+    /// Removes a pose; returns `None` if it does not exist.
     pub fn remove(&mut self, index: usize) -> Option<Pose> {
         let removed = (index < self.poses.len()).then(|| {
             self.places.remove(index);
@@ -280,15 +271,14 @@ impl GravitySession {
         removed
     }
 
-    /// Removes the newest pose.
     pub fn undo(&mut self) -> Option<Pose> {
         self.remove(self.poses.len().checked_sub(1)?)
     }
 
-    /// Fit of the poses recorded so far.
+    /// Fits the poses recorded so far.
     ///
     /// # Errors
-    /// As [`fit`](super::fit()).
+    /// The errors of [`fit`](super::fit()).
     pub fn report(&self) -> Result<GravityReport, GravityError> {
         fit(&self.poses, &self.settings.fit)
     }
@@ -304,7 +294,7 @@ mod tests {
         gravity::{CheckPass, Compensator, tests::Tool},
     };
 
-    /// Holds the tool still for 1.6 s with an additional force and noise of 0.02 N; returns the states seen.
+    /// Holds the tool still for 1.6 s with an additional force and noise of 0.02 N; returns the observed states.
     fn hold(
         session: &mut GravitySession,
         tool: &mut Tool,

@@ -1,4 +1,4 @@
-//! The three least-squares solutions, all by singular value decomposition rather than normal equations.
+//! The three least-squares solutions, all by singular value decomposition instead of normal equations.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -8,10 +8,11 @@ use super::{
 };
 use crate::frames::GRAVITY_M_S2;
 
-/// Singular values below this share of the largest are dropped as noise.
+/// Singular values below this fraction of the largest are dropped as noise: far above the rounding of 64-bit numbers
+/// (1e-16), and far below what poses of any use have.
 const RANK_SHARE: f64 = 1e-10;
 
-/// Fits one model to these rows; `None` if there are too few rows or the solution is not finite.
+/// Fits one model to these rows; returns `None` if there are too few rows or the solution is not finite.
 pub(super) fn solve(kind: ModelKind, rows: &[Row], has_torque: bool) -> Option<Parameters> {
     match kind {
         ModelKind::Physical => physical(rows, has_torque),
@@ -20,7 +21,8 @@ pub(super) fn solve(kind: ModelKind, rows: &[Row], has_torque: bool) -> Option<P
     }
 }
 
-/// Least squares `A X = B` by singular value decomposition, equivalent to the pseudo-inverse of the paper.
+/// Solves `A X = B` in the least-squares sense by singular value decomposition, equivalent to the paper's
+/// pseudo-inverse.
 fn least_squares(a: DMatrix<f64>, b: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let svd = a.try_svd(true, true, f64::EPSILON, 200)?;
     let cut = svd.singular_values.max() * RANK_SHARE;
@@ -32,7 +34,8 @@ fn forces(rows: &[Row]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 3, |i, j| rows[i].wrench.force_n[j])
 }
 
-/// Mass, rotation and bias: Wahba's problem with a scale (Umeyama 1991), on rows with their means subtracted.
+/// Solves for mass, rotation and bias: Wahba's problem with a scale (Umeyama 1991), on rows with their means
+/// subtracted.
 fn physical(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     let (mass_kg, s1_from_source) = scaled_rotation(rows)?;
     let (mean_force, mean_field) = means(rows);
@@ -51,7 +54,7 @@ fn means(rows: &[Row]) -> (Vector3<f64>, Vector3<f64>) {
     })
 }
 
-/// Scale (kg) and proper rotation that map the centred gravity vectors to the centred forces.
+/// Returns the scale (kg) and the proper rotation that map the centred gravity vectors to the centred forces.
 pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
     if rows.len() < 3 {
         return None;
@@ -78,7 +81,7 @@ pub(super) fn scaled_rotation(rows: &[Row]) -> Option<(f64, Rotation3<f64>)> {
     (mass_kg.is_finite() && rotation.matrix().iter().all(|x| x.is_finite())).then_some((mass_kg.max(0.0), rotation))
 }
 
-/// A free 3x3 gain and bias; columns are divided by g to have the magnitude of the constant.
+/// Solves for a free 3x3 gain and bias; columns are divided by g to have the magnitude of the constant.
 fn gain(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     if rows.len() < 4 {
         return None;
@@ -90,12 +93,11 @@ fn gain(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     Some(Parameters::Gain { gain_kg, bias_n, torque })
 }
 
-/// Rows `(u / g, 1)`.
 pub(super) fn design(rows: &[Row]) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), 4, |i, j| if j < 3 { rows[i].field_m_s2[j] / GRAVITY_M_S2 } else { 1.0 })
 }
 
-/// The paper's five columns.
+/// Solves for the paper's five columns.
 fn paper(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     if rows.len() < 5 {
         return None;
@@ -116,11 +118,11 @@ fn paper(rows: &[Row], has_torque: bool) -> Option<Parameters> {
     Some(Parameters::Paper { force_n: by_axis(least_squares(a, &forces(rows))?), torque_nm })
 }
 
-/// Centre of mass and torque bias from `tau = com x w + tau0` with the weight `w = G u`: linear in both.
+/// Solves for centre of mass and torque bias from `tau = com x w + tau0` with the weight `w = G u`: linear in both.
 fn torque(rows: &[Row], gain_kg: &Matrix3<f64>) -> Option<TorqueParameters> {
     let mut a = DMatrix::zeros(3 * rows.len(), 6);
     let mut b = DMatrix::zeros(3 * rows.len(), 1);
-    // The columns of the centre of mass have the magnitude of the weight; those of the bias are scaled to match.
+    // The columns of the centre of mass have the magnitude of the weight; the columns of the bias are scaled to match.
     let size = gain_kg.norm().max(f64::MIN_POSITIVE) * GRAVITY_M_S2 / 3_f64.sqrt();
     for (i, row) in rows.iter().enumerate() {
         let weight = gain_kg * row.field_m_s2;

@@ -1,4 +1,4 @@
-//! Detects when force and orientation are still, with bounded memory: running means that are reset on any motion.
+//! Detects when force and orientation are still, with bounded memory: running means that are reset by any motion.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -7,14 +7,12 @@ use crate::{
     frames::{Wrench, WristSample},
 };
 
-/// Criteria for stillness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StillSettings {
-    /// Duration, s.
     pub time_s: f64,
-    /// Largest deviation of a 20 ms mean of the force from the mean of the interval, N.
+    /// Maximum deviation of a 20 ms mean of the force from the mean of the interval, N.
     pub force_n: f64,
-    /// Largest deviation of a 20 ms mean of the gravity vector from the mean of the interval, m/s^2.
+    /// Maximum deviation of a 20 ms mean of the gravity vector from the mean of the interval, m/s^2.
     pub field_m_s2: f64,
     /// A gap in time longer than this resets the interval, s.
     pub gap_s: f64,
@@ -26,7 +24,8 @@ impl Default for StillSettings {
     }
 }
 
-/// Length of the short means, s.
+/// Length of the short means, s: a mean of 20 samples at 1 kHz, so that the noise of single samples does not count as
+/// motion.
 const SHORT_S: f64 = 0.020;
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,7 +66,6 @@ impl Sums {
     }
 }
 
-/// The present interval.
 #[derive(Clone, Debug)]
 pub(super) struct Still {
     settings: StillSettings,
@@ -95,34 +93,34 @@ impl Still {
         }
     }
 
-    /// Resets the interval.
     pub(super) fn reset(&mut self) {
         self.short = Sums::default();
         self.whole = Sums::default();
         self.last_s = None;
     }
 
-    /// Whether the last short mean was still; `None` before the first.
+    /// Returns whether the last short mean was still; `None` before the first one.
     pub(super) fn is_still(&self) -> Option<bool> {
         self.moved.map(|moved| !moved)
     }
 
-    /// Whether the tool moves, and for the last half second only its force did.
+    /// Returns whether the tool moves and, for the last half second, only its force has changed.
     pub(super) fn only_force_moved(&self) -> bool {
         self.moved == Some(true) && self.last_s.is_some_and(|last| last - self.field_moved_s > 0.5)
     }
 
-    /// Means over the interval: wrench (`s1`) and gravity vector (m/s^2, source's frame).
+    /// Returns the means over the interval: wrench (`s1`) and gravity vector (m/s^2, source's frame).
     pub(super) fn mean(&self) -> Option<(Wrench, Vector3<f64>)> {
         (self.whole.count > 0.0).then(|| self.whole.mean())
     }
 
-    /// Mean orientation from the arm over the interval; `None` unless every sample of it had one.
+    /// Returns the mean orientation from the arm over the interval; `None` unless every sample had an orientation.
     pub(super) fn mean_world_from_s1(&self) -> Option<UnitQuaternion<f64>> {
         self.whole.world_from_s1.mean().filter(|_| self.whole.turned >= self.whole.count)
     }
 
-    /// Adds a sample; returns the share of the required time (1 or more: still long enough), `None` while it moves.
+    /// Adds a sample; returns the fraction of the required time (1 or more: still long enough), `None` while the tool
+    /// moves.
     pub(super) fn step(&mut self, sample: &WristSample, field: &Vector3<f64>, t_s: f64) -> Option<f64> {
         if !self.last_s.is_some_and(|last| t_s > last && t_s - last <= self.settings.gap_s) {
             self.reset();

@@ -5,14 +5,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// A target orientation of the tool. Gravity does not depend on rotation about the vertical, so only tilt matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseTarget {
-    /// Short name for a screen.
     pub name: &'static str,
     /// Direction of gravity in `s1` in this pose (z along the shaft towards the tip), not normalised.
     pub down_s1: [f64; 3],
 }
 
 impl PoseTarget {
-    /// The orientation of the sensor with the smallest rotation from the base's frame.
+    /// Returns the orientation of the sensor with the smallest rotation from the base's frame.
     pub fn world_from_s1(&self) -> UnitQuaternion<f64> {
         let from = Vector3::from(self.down_s1);
         let to = -Vector3::z();

@@ -1,4 +1,4 @@
-//! The fit for tools with known mass, mounting and bias. Held-out figures are from poses that were not used for a fit.
+//! The fit for tools with known mass, mounting and bias. Held-out results are from poses that were not used for a fit.
 
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
@@ -9,7 +9,6 @@ use crate::{
     noise::Noise,
 };
 
-/// A tool with known parameters.
 pub(super) struct Tool {
     pub(super) mass_kg: f64,
     pub(super) com_m: Vector3<f64>,
@@ -32,7 +31,7 @@ impl Tool {
         Vector3::from_fn(|_, _| self.noise.gaussian() * size)
     }
 
-    /// A random orientation of the sensor, uniformly distributed.
+    /// Returns a random orientation of the sensor, uniformly distributed.
     pub(super) fn any_orientation(&mut self) -> UnitQuaternion<f64> {
         UnitQuaternion::new_normalize(nalgebra::Quaternion::new(
             self.noise.gaussian(),
@@ -42,7 +41,7 @@ impl Tool {
         ))
     }
 
-    /// Reading of the sensor at rest in this orientation.
+    /// Returns a reading of the sensor at rest in this orientation.
     pub(super) fn sample(&mut self, world_from_s1: UnitQuaternion<f64>, noise_n: f64, noise_nm: f64) -> WristSample {
         let down_s1 = world_from_s1.inverse_transform_vector(&Vector3::new(0.0, 0.0, -GRAVITY_M_S2));
         let weight = down_s1 * self.mass_kg;
@@ -85,12 +84,12 @@ fn report(poses: &[Pose]) -> GravityReport {
     fit(poses, &Settings::default()).unwrap()
 }
 
-/// The wrench of one sample without gravity and bias.
+/// Returns the wrench of one sample without gravity and bias.
 fn gravity_free(model: &GravityModel, sample: &WristSample) -> Option<Wrench> {
     Compensator::new(*model, DEFAULT_TIME_CONSTANT_S, 1e-3).step(sample)
 }
 
-/// Errors of a model on new poses of the same tool.
+/// Returns the errors of a model on new poses of the same tool.
 fn fresh_errors(model: &GravityModel, tool: &mut Tool, count: usize) -> Vec<Vector3<f64>> {
     let mut error = |_| {
         let world_from_s1 = tool.any_orientation();
@@ -243,7 +242,6 @@ fn forces_that_have_nothing_to_do_with_gravity_are_poor_data() {
     }
 }
 
-/// What a sensor reads, N.
 type Force = fn(&mut Tool) -> Vector3<f64>;
 
 #[test]
@@ -265,12 +263,12 @@ fn a_sensor_that_does_not_feel_the_tool_is_refused_with_its_cause() {
                 for poses in &sets {
                     let report = fit(poses, &Settings { model, ..Settings::default() }).unwrap();
                     assert_eq!(report.verdict, Verdict::PoorData, "{name}, seed {seed}: {}", report.reason);
-                    assert!(report.reason.contains("no weight is seen"), "{name}, seed {seed}: {}", report.reason);
+                    assert!(report.reason.contains("no weight was measured"), "{name}, seed {seed}: {}", report.reason);
                 }
             }
         }
     }
-    // A light tool of 20 g is accepted at usual noise.
+    // A light tool of 20 g is accepted at typical noise.
     let accepted =
         (0..50).filter(|seed| report(&Tool::new(7100 + seed, 0.02).imu_poses(12)).verdict == Verdict::Accepted);
     assert!(accepted.count() >= 48);

@@ -1,19 +1,20 @@
-//! A bias that drifts from the first pose to the last, as a sensor's does while it warms up.
+//! A bias that drifts from the first pose to the last, like a sensor's while it warms up.
 
 use nalgebra::{DMatrix, Matrix5x3};
 
 use super::pose::Row;
 use crate::frames::GRAVITY_M_S2;
 
-/// With fewer poses a drift cannot be told from chance.
+/// With fewer poses a drift cannot be distinguished from chance.
 const LEAST_POSES: usize = 12;
-/// A drift is reported if it leaves less than this share of the poses' disagreement.
+/// A drift is reported if it leaves less than this fraction of the poses' disagreement; noise alone would leave almost
+/// all.
 const LEFT_SHARE: f64 = 0.5;
 
-/// Change of the bias over all poses, in the order of recording (N), if a steady drift explains what the poses disagree
-/// by. `floor_n`: a smaller change is none.
+/// Returns the change of the bias over all poses, in the order of recording (N), if a steady drift explains the
+/// disagreement of the poses. A change below `floor_n` does not count.
 ///
-/// Least squares of the force on gravity (a free 3x3 gain), a constant, and the place in the order.
+/// Least squares of the force on gravity (a free 3x3 gain), a constant, and the position in the order.
 pub(super) fn drift_n(rows: &[Row], floor_n: f64) -> Option<f64> {
     if rows.len() < LEAST_POSES {
         return None;
@@ -44,7 +45,7 @@ mod tests {
     use super::super::{Pose, Settings, fit, tests::Tool};
     use crate::calibration::{AxisStats, Verdict};
 
-    /// Poses of a sensor whose bias moves by this much while it warms up, most of it at first.
+    /// Returns poses of a sensor whose bias changes by this much while it warms up, mostly at first.
     fn warming(seed: u64, count: usize, drift_n: f64) -> (Tool, Vec<Pose>) {
         let mut tool = Tool::new(seed, 0.3);
         let way = tool.vector(1.0).normalize() * drift_n;
@@ -75,7 +76,7 @@ mod tests {
             let (tool, poses) = warming(seed, 40, 0.15);
             let report = fit(&poses, &Settings::default()).unwrap();
             let model = report.chosen_fit().unwrap().model;
-            // The bias in the middle of the drift is half of it away from either end.
+            // In the middle of the drift the bias is half of it away from either end.
             errors.push(model.predict(&Vector3::zeros()).force_n - tool.bias.force_n);
         }
         assert!(AxisStats::of(errors).largest() < 0.15);

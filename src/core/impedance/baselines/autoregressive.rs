@@ -1,8 +1,9 @@
-//! Extrapolation by an autoregressive model of the force: `f(t) = c + sum_j a_j f(t - D - j s)`, by recursive least squares.
+//! Extrapolation by an autoregressive model of the force: `f(t) = c + sum_j a_j f(t - D - j s)`, by recursive least
+//! squares.
 //!
-//! The model is fitted at the horizon itself (the direct form of a multi-step forecast), so that it need not be iterated over
-//! hundreds of samples. Its columns are the newest force and the differences between the taps, which is the same model as with
-//! the taps and well conditioned; what is known before any learning is `f(t) = f(t - D)`, reflection.
+//! The model is fitted directly at the prediction horizon (the direct form of a multi-step forecast), so that it need
+//! not be iterated over hundreds of samples. Its columns are the newest force and the differences between the taps,
+//! which are equivalent to the taps and well conditioned; before any learning it is `f(t) = f(t - D)`, reflection.
 
 use super::{
     BaselineModel,
@@ -13,13 +14,13 @@ use crate::{
     signal::{DelayLine, Lanes},
 };
 
-/// Taps, and how many of their spacings make a delay (chosen on recordings, see docs/baselines.md).
+/// Number of taps, and number of their spacings in a delay (chosen on recordings, see docs/modes.md).
 const TAPS: usize = 6;
 const SPACINGS: usize = 10;
 /// Memory (s) and ridge (s) of the regression.
 const MEMORY_S: f64 = 3.0;
 const RIDGE_S: f64 = 0.03;
-/// Solves per second (at most one a tick).
+/// Solves per second (at most one a tick), because the parameters hardly change within 5 ms.
 const SOLVE_HZ: f64 = 200.0;
 
 /// A constant, the newest force, and the differences of the taps.
@@ -54,7 +55,7 @@ impl Autoregressive {
         autoregressive
     }
 
-    /// Foretells another delay ahead; the model of the old one is forgotten.
+    /// Predicts over another delay from now on and discards the old model.
     pub(super) fn set_delay(&mut self, delay_ticks: usize) {
         self.delay_ticks = delay_ticks;
         self.spacing = spacing(delay_ticks);
@@ -76,13 +77,13 @@ impl Autoregressive {
             }
         }
         self.tick = self.tick.wrapping_add(1);
-        // Before there are as many forces as taps: reflection.
+        // Until there are as many forces as taps, the prediction is reflection.
         let foretold = self.columns(0).map_or(newest, |now| dot(&self.coefficients, &now));
         let [low, high] = self.envelope.bounds_n();
         BaselineModel::Forecast { force_n: within(foretold, low, high) }
     }
 
-    /// The columns as they were `ago` ticks ago.
+    /// Returns the columns of `ago` ticks ago.
     fn columns(&self, ago: usize) -> Option<[Lanes; COLUMNS]> {
         let mut columns = [Lanes([1.0, 1.0, 1.0, 0.0]); COLUMNS];
         let mut later = *self.past.get(ago)?;
@@ -104,7 +105,7 @@ impl Autoregressive {
     }
 }
 
-/// Ticks from tap to tap for a delay.
+/// Returns the number of ticks between two taps for a delay.
 const fn spacing(delay_ticks: usize) -> usize {
     let spacing = delay_ticks / SPACINGS;
     if spacing == 0 { 1 } else { spacing }

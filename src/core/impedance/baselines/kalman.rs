@@ -1,21 +1,21 @@
 //! Extrapolation by a Kalman filter of the force and its rate.
 //!
-//! The force moves at a rate that white noise drives and that forgets itself with a time constant `tau`, as Singer takes it for the
-//! acceleration of a target ("Estimating optimal tracking filter performance for manned maneuvering targets", IEEE Trans. Aerospace
-//! and Electronic Systems 6, 1970), here one derivative lower: a force has no inertia. Over a time `t` the state goes by
-//! `f + f' tau (1 - e^(-t/tau))`, `f' e^(-t/tau)`; `tau` without end would be the constant-rate filter of the textbooks, which
-//! overshoots by the whole rate times the delay. The gain is the fixed point of the Riccati equation; the leader extrapolates over the
-//! parcel's age.
+//! The rate of the force is driven by white noise and decays with a time constant `tau`, like the acceleration of a
+//! target in Singer ("Estimating optimal tracking filter performance for manned maneuvering targets", IEEE Trans.
+//! Aerospace and Electronic Systems 6, 1970), but one derivative lower, because a force has no inertia. Over a time `t`
+//! the state changes by `f + f' tau (1 - e^(-t/tau))`, `f' e^(-t/tau)`; an infinite `tau` would be the constant-rate
+//! filter of the textbooks, which overshoots by the whole rate times the delay. The gain is the fixed point of the
+//! Riccati equation; the leader extrapolates over the packet's age.
 
 use super::BaselineModel;
 use crate::signal::Lanes;
 
-/// How long a rate lasts (s), and the bandwidth of the filter (Hz): `w^4` is the spectral density of the noise over that of the
-/// measurement (chosen on recordings, see docs/baselines.md).
+/// Time constant of the rate (s), and bandwidth of the filter (Hz): `w^4` is the spectral density of the noise divided
+/// by that of the measurement (chosen on recordings, see docs/modes.md).
 const LASTING_S: f64 = 0.005;
 const BANDWIDTH_HZ: f64 = 100.0;
 
-/// The force that this state leads to after a time.
+/// Returns the force extrapolated from this state over a time.
 pub(super) fn extrapolated(force_n: Lanes, rate_n_s: Lanes, age_s: f64) -> Lanes {
     force_n - rate_n_s * (LASTING_S * libm::expm1(-age_s / LASTING_S))
 }
@@ -36,7 +36,7 @@ impl Kalman {
 
     pub(super) fn step(&mut self, force_n: Option<Lanes>) -> BaselineModel {
         if let Some([force, rate]) = &mut self.state {
-            // A missing force leaves the state as it was: the leader extrapolates by age.
+            // A missing force leaves the state unchanged, because the leader extrapolates by age.
             if let Some(measured) = force_n {
                 let foretold = extrapolated(*force, *rate, self.period_s);
                 let innovation = measured - foretold;
@@ -54,7 +54,8 @@ impl Kalman {
     }
 }
 
-/// The steady-state gain for force and rate (1, 1/s). Computed in periods, so that all numbers are near one.
+/// Returns the steady-state gain for force and rate (1, 1/s). It is computed in periods, so that all numbers are near
+/// one.
 fn gain(rate_hz: f64) -> [f64; 2] {
     let tau = LASTING_S * rate_hz;
     let bandwidth_hz = BANDWIDTH_HZ.min(0.1 * rate_hz);
@@ -62,7 +63,7 @@ fn gain(rate_hz: f64) -> [f64; 2] {
     let lasting = libm::exp(-1.0 / tau);
     let step = std::f64::consts::TAU * bandwidth_hz / rate_hz;
     let q = step * step * (step * step);
-    // Covariances of force, of both, of rate; the measurement's is one.
+    // Covariances of the force, of force and rate, and of the rate; the measurement's is one.
     let mut ff = 1.0;
     let mut fr = 0.0;
     let mut rr = 1.0;

@@ -1,8 +1,8 @@
-//! Methods of others, to compare with: each from its published form, as one more mode behind the same gates.
+//! Published methods for comparison: each in its published form, as one more mode behind the same gates.
 //!
-//! At most one is computed, and only where it is asked for by name; [`Follower`] makes what crosses the link, [`Leader`] makes
-//! the force. Every axis is taken for a channel of its own, as in the publications, which have one degree of freedom.
-//! Sources, constants, figures, and what was left out: docs/baselines.md.
+//! At most one is computed, and only if it is requested by name; [`Follower`] creates the data for the link, [`Leader`]
+//! computes the force. Every axis is treated as a separate channel, as in the publications, which have one degree of
+//! freedom. Sources, constants, results and omissions: docs/modes.md.
 
 mod autoregressive;
 mod kalman;
@@ -32,36 +32,30 @@ use super::{
 };
 use crate::signal::{Lanes, Motion};
 
-/// What a baseline sends besides the force: plain numbers, fixed size.
+/// Data that a baseline sends in addition to the force: plain numbers, fixed size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a parcel of fixed size")]
+#[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a packet of fixed size")]
 pub enum BaselineModel {
-    /// No baseline is computed, or it knows nothing yet.
+    /// No baseline is computed, or it has no data yet.
     Nothing,
-    /// Model-mediated teleoperation: the contact.
     Contact(Contact),
-    /// Wave variables: the returning wave.
     Wave(Wave),
     /// Time-domain passivity: the energy that the tissue has returned so far (J).
     Returned {
-        /// Per axis, never falling.
+        /// One value per axis, never decreasing.
         energy_j: Lanes,
     },
     /// Kalman: the filtered force and its rate, which the leader extrapolates.
     Trend {
-        /// N.
         force_n: Lanes,
-        /// N/s.
         rate_n_s: Lanes,
     },
-    /// Autoregressive: the force foretold for one delay later.
+    /// Autoregressive: the force predicted for one delay later.
     Forecast {
-        /// N.
         force_n: Lanes,
     },
 }
 
-/// The follower's end.
 #[derive(Clone, Debug)]
 pub(super) struct Follower {
     scales: Scales,
@@ -90,7 +84,7 @@ impl Follower {
         Self { scales: settings.scales, method }
     }
 
-    /// Takes the follower's newest motion and force (N), `None` where either was not measured; returns what to send.
+    /// Adds the follower's newest motion and force (N), `None` if either was not measured; returns the data to send.
     pub(super) fn step(&mut self, posture: &Posture, force_n: Option<Lanes>) -> BaselineModel {
         let motion = motion(posture, &self.scales);
         match &mut self.method {
@@ -102,7 +96,6 @@ impl Follower {
         }
     }
 
-    /// Foretells another delay ahead from now on.
     pub(super) fn set_delay(&mut self, delay_ticks: usize) {
         if let Method::Autoregressive(method) = &mut self.method {
             method.set_delay(delay_ticks);
@@ -120,7 +113,6 @@ impl Follower {
     }
 }
 
-/// The leader's end.
 #[derive(Clone, Debug)]
 pub(super) struct Leader {
     scales: Scales,
@@ -137,8 +129,8 @@ impl Leader {
         }
     }
 
-    /// The force (N) of this tick from what came, whose force is `measured_n` and which is `age_ticks` old, and from the leader's own
-    /// motion; `None` without a model or where it is not finite.
+    /// Returns the force (N) of this tick from the received model, whose force is `measured_n` and whose age is
+    /// `age_ticks`, and from the leader's own motion; `None` without a model or if the force is not finite.
     pub(super) fn step(
         &mut self,
         model: &BaselineModel,
@@ -165,7 +157,7 @@ impl Leader {
     }
 }
 
-/// Both ends of a baseline: what it sends, and what a leader that makes the follower's own motion would render.
+/// Both ends of a baseline: the sender, and a leader that makes the follower's own motion.
 #[derive(Clone, Debug)]
 pub(super) struct Ends {
     follower: Follower,
@@ -179,7 +171,6 @@ impl Ends {
 }
 
 impl method::Method for Ends {
-    /// Of all baselines there is memory for one.
     fn serves(&self, modes: ModeSet) -> bool {
         modes.baseline().is_some()
     }
@@ -202,7 +193,7 @@ impl method::Method for Ends {
     }
 }
 
-/// Position (m), velocity (m/s) and acceleration (m/s^2) of a posture.
+/// Returns position (m), velocity (m/s) and acceleration (m/s^2) of a posture.
 fn motion(posture: &Posture, scales: &Scales) -> Motion {
     Motion {
         x: posture.stance.x,
@@ -211,7 +202,7 @@ fn motion(posture: &Posture, scales: &Scales) -> Motion {
     }
 }
 
-/// `exp(-1 / memory)`: what a memory of this length (s) keeps over one tick.
+/// Returns `exp(-1 / memory)`: the fraction that a memory of this length (s) keeps over one tick.
 fn kept(memory_s: f64, rate_hz: f64) -> f64 {
     libm::exp(-1.0 / (memory_s * rate_hz))
 }

@@ -1,15 +1,15 @@
-//! Model-mediated teleoperation: a Hunt-Crossley contact is identified at the follower, its parameters cross the link, and the leader
-//! renders the contact from its own motion (Mitra and Niemeyer, "Model-mediated telemanipulation", Int. J. Robotics Research 27,
-//! 2008).
+//! Model-mediated teleoperation: a Hunt-Crossley contact is identified at the follower, its parameters cross the link,
+//! and the leader renders the contact from its own motion (Mitra and Niemeyer, "Model-mediated telemanipulation", Int.
+//! J. Robotics Research 27, 2008).
 //!
-//! `f = K d^n + B d^n v` at a depth `d` beyond the surface; `K` and `B` by recursive least squares with exponential forgetting, the
-//! first stage of Diolaiti, Melchiorri and Stramigioli ("Contact impedance estimation for robotic systems", IEEE Trans. Robotics 21,
-//! 2005).
+//! `f = K d^n + B d^n v` at a depth `d` beyond the surface; `K` and `B` by recursive least squares with exponential
+//! forgetting, the first stage of Diolaiti, Melchiorri and Stramigioli ("Contact impedance estimation for robotic
+//! systems", IEEE Trans. Robotics 21, 2005).
 //!
-//! The publications know where the surface is, and their sensors feel nothing but the contact. Here surface and exponent are those of a
-//! few that fit best (their second stage, a logarithmic regression for the exponent, was tried and was worse), with a contact on each
-//! side of the surface (an instrument between two walls); an offset, damping and mass of the instrument are fitted too; and the force
-//! stays within the range of forces seen, as in our own modes.
+//! In the publications the surface is known and the sensors measure only the contact. Here the best of a few surfaces
+//! and exponents is used (their second stage, a logarithmic regression for the exponent, was tried and was worse), with
+//! a contact on each side of the surface (an instrument between two walls); an offset, damping and mass of the
+//! instrument are fitted too; and the force stays within the range of past forces, as in our own modes.
 
 use super::{
     kept,
@@ -20,37 +20,35 @@ use crate::{
     signal::{Lanes, Motion},
 };
 
-/// Memory (s) and ridge (s) of the regression, and memory of the errors (s) (chosen on recordings, see docs/baselines.md).
+/// Memory (s) and ridge (s) of the regression, and memory of the errors (s) (chosen on recordings, see docs/modes.md).
 const MEMORY_S: f64 = 1.0;
 const RIDGE_S: f64 = 0.01;
 const ERROR_S: f64 = 1.0;
-/// Solves per second (at most one a tick).
+/// Solves per second (at most one a tick), because the parameters hardly change within 5 ms.
 const SOLVE_HZ: f64 = 200.0;
-/// Places where the surface may be, evenly over the range visited.
+/// Number of candidate surfaces, evenly spaced over the visited range.
 const PLACES: usize = 5;
-/// Exponents that are compared: a linear contact, a sphere's, a cone's.
+/// Exponents that are compared: a linear contact, a sphere, a cone.
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
 const CANDIDATES: usize = PLACES * EXPONENTS.len();
-/// The range is enlarged by this share at once, so that the sums are seldom brought to another one.
+/// The range is enlarged by this fraction at once, so that the sums are rarely converted to another range.
 const ROOM: f64 = 0.05;
 
-/// Stiffness and damping on both sides; then an offset, and the instrument's own damping and mass.
+/// Stiffness and damping on both sides, then an offset, and the instrument's own damping and mass.
 const COLUMNS: usize = 7;
 const SIDES: usize = 4;
 
-/// What crosses the link: a Hunt-Crossley contact on each side of a surface.
+/// The model sent over the link: a Hunt-Crossley contact on each side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// The surface (m).
     pub surface_m: Lanes,
-    /// Depth by which depths are divided (m).
+    /// Unit of depth (m): depths are divided by it.
     pub reach_m: Lanes,
-    /// `n`.
     pub exponent: Lanes,
-    /// For the side above and below the surface stiffness (N at the reach) and damping (N s/m at the reach); then the offset (N), the
-    /// instrument's damping (N s/m) and mass (kg).
+    /// For the sides above and below the surface: stiffness (N at the reach) and damping (N s/m at the reach); then the
+    /// offset (N), the instrument's damping (N s/m) and mass (kg).
     pub parameters: [Lanes; COLUMNS],
-    /// Least and greatest force rendered (N).
+    /// Minimum and maximum force rendered (N).
     pub bounds_n: [Lanes; 2],
 }
 
@@ -63,15 +61,15 @@ impl Contact {
         bounds_n: [Lanes::ZERO; 2],
     };
 
-    /// The force (N) for a motion.
+    /// Returns the force (N) for a motion.
     pub(super) fn force(&self, own: &Motion) -> Lanes {
         let force_n = dot(&self.parameters, &self.columns(own));
         let [low, high] = self.bounds_n;
-        // A limit would turn what is not a number into one of its edges.
+        // Clamping would turn a NaN into one of the limits.
         if force_n.is_finite() { within(force_n, low, high) } else { force_n }
     }
 
-    /// Signed depth in reaches.
+    /// Returns the signed depth, in units of the reach.
     fn depth(&self, motion: &Motion) -> Lanes {
         (motion.x - self.surface_m) * self.reach_m.recip_or_zero()
     }
@@ -84,7 +82,7 @@ impl Contact {
         [above, above * motion.v, below, below * motion.v, Lanes([1.0, 1.0, 1.0, 0.0]), motion.v, motion.a]
     }
 
-    /// Takes over another contact on one axis; the reach is the same.
+    /// Copies another contact on one axis; both have the same reach.
     fn take(&mut self, lane: usize, better: &Self) {
         self.surface_m[lane] = better.surface_m[lane];
         self.exponent[lane] = better.exponent[lane];
@@ -94,7 +92,6 @@ impl Contact {
     }
 }
 
-/// A depth to one of the exponents.
 fn power(depth: f64, exponent: f64) -> f64 {
     if exponent > 1.75 {
         depth * depth
@@ -105,7 +102,7 @@ fn power(depth: f64, exponent: f64) -> f64 {
     }
 }
 
-/// A surface and an exponent, and the contact that is identified for them.
+/// A surface and an exponent, with the contact identified for them.
 #[derive(Clone, Debug)]
 struct Candidate {
     contact: Contact,
@@ -119,7 +116,6 @@ pub(super) struct ModelMediated {
     every: usize,
     tick: usize,
     candidates: [Candidate; CANDIDATES],
-    /// Least and greatest position (m).
     range_m: [Lanes; 2],
     envelope: Envelope,
     contact: Contact,
@@ -151,7 +147,7 @@ impl ModelMediated {
         self.visit(motion);
         for (i, candidate) in self.candidates.iter_mut().enumerate() {
             candidate.learn(motion, force_n, self.errors_kept);
-            // One after the other, and all on the first tick.
+            // One candidate after the other, and all of them on the first tick.
             if self.tick == 0 || self.tick % self.every == i % self.every {
                 candidate.solve();
             }
@@ -161,7 +157,7 @@ impl ModelMediated {
         self.contact
     }
 
-    /// Enlarges the range to where the follower is, and brings the surfaces to it.
+    /// Enlarges the range to include the follower's position, and moves the surfaces accordingly.
     fn visit(&mut self, motion: &Motion) {
         if self.tick == 0 {
             self.range_m = [motion.x; 2];
@@ -185,7 +181,7 @@ impl ModelMediated {
         }
     }
 
-    /// On each axis the contact that fits best.
+    /// Returns the contact that fits best on each axis.
     fn best(&self) -> Contact {
         let [first, others @ ..] = &self.candidates;
         let mut best = first.contact;
@@ -229,8 +225,8 @@ impl Candidate {
         }
     }
 
-    /// Takes another surface and reach. The sums are brought to the reach, for a depth in reaches becomes smaller; what the surface
-    /// moves by is forgotten with time.
+    /// Switches to another surface and reach. The sums are converted to the new reach, because a depth in reaches
+    /// becomes smaller; the shift of the surface is forgotten with time.
     fn move_to(&mut self, surface_m: Lanes, reach_m: Lanes) {
         let ratio = (self.contact.reach_m * reach_m.recip_or_zero()).zip(self.contact.exponent, power);
         let one = Lanes::splat(1.0);

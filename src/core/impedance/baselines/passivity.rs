@@ -1,14 +1,16 @@
-//! Time-domain passivity over a delayed link, the way back (Hannaford and Ryu, "Time-domain passivity control of haptic interfaces",
-//! IEEE Trans. Robotics and Automation 18, 2002; Ryu, Artigas and Preusche, "A passive bilateral control scheme for a teleoperator
-//! with time-varying communication delay", Mechatronics 20, 2010).
+//! Time-domain passivity over a delayed link, return channel (Hannaford and Ryu, "Time-domain passivity control of
+//! haptic interfaces", IEEE Trans. Robotics and Automation 18, 2002; Ryu, Artigas and Preusche, "A passive bilateral
+//! control scheme for a teleoperator with time-varying communication delay", Mechatronics 20, 2010).
 //!
-//! The energy at each port is split by its direction. The follower adds up what the tissue gives into the link, `E_in`, which
-//! never falls, and sends it with the force. The leader adds up what the link gives the hand, `E_out`, and may give no more than
-//! has come in: observer `W(k) = E_in(k - D) - E_out(k) + E_pc(k - 1)`; where that is negative the controller adds the damping
-//! `alpha = -W / (v^2 T)`, which takes `E_pc += alpha v^2 T`. The deficit of a tick is at most what that tick gives, so the damping
-//! never turns the force round.
+//! The energy at each port is split by its direction. The follower accumulates the energy that the tissue gives to the
+//! link, `E_in`, which never decreases, and sends it with the force. The leader accumulates the energy that the link
+//! gives to the hand, `E_out`, and may not give more than was put in: observer
+//! `W(k) = E_in(k - D) - E_out(k) + E_pc(k - 1)`; where `W` is negative, the controller adds the damping
+//! `alpha = -W / (v^2 T)`, which dissipates `E_pc += alpha v^2 T`. The deficit of a tick is at most the energy given in
+//! that tick, so the damping never reverses the force.
 //!
-//! Left out, because motion has no delay on its way to the follower in this loop: the observer and controller at the follower.
+//! The observer and controller at the follower are omitted, because the motion reaches the follower without delay in
+//! this loop.
 
 use crate::signal::{Lanes, Motion};
 
@@ -50,16 +52,16 @@ impl Controller {
         Self { period_s: rate_hz.recip(), came_j: Lanes::ZERO, store_j: Lanes::ZERO }
     }
 
-    /// The force (N) for the hand: the one that came and what the controller adds to it.
+    /// Returns the force (N) for the hand: the received force plus the controller's damping.
     pub(super) fn step(&mut self, force_n: Lanes, came_j: Lanes, own: &Motion) -> Lanes {
         if !came_j.is_finite() {
             return force_n;
         }
-        // Energy that comes twice (a longer delay, a follower that began anew) is not counted again.
+        // Energy that is reported twice (after a longer delay or a restart of the follower) is not counted again.
         self.store_j += (came_j - self.came_j).map(|more_j| more_j.max(0.0));
         self.came_j = came_j;
         self.store_j -= given(force_n, own, self.period_s);
-        // `-alpha v = W / (v T)`, against the motion; then nothing is owed.
+        // `-alpha v = W / (v T)`, against the motion; after it no deficit remains.
         let damping_n = self.store_j.map(|store_j| store_j.min(0.0)) * (own.v * self.period_s).recip_or_zero();
         self.store_j = self.store_j.map(|store_j| store_j.max(0.0));
         force_n + damping_n
@@ -71,7 +73,7 @@ impl Controller {
     }
 }
 
-/// What a force gives in one period along the motion (J), nothing where it takes.
+/// Returns the energy (J) that a force gives along the motion in one period; 0 if it absorbs energy.
 fn given(force_n: Lanes, motion: &Motion, period_s: f64) -> Lanes {
     (force_n * motion.v * period_s).map(|energy_j| energy_j.max(0.0))
 }

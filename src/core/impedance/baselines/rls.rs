@@ -4,13 +4,15 @@ use crate::signal::{Lanes, NOTHING};
 
 use super::kept;
 
-/// Memory of the columns' mean squares, by which the ridge is made free of units (s).
+/// Memory of the columns' mean squares, which make the ridge independent of units (s): longer than the memory of the
+/// fit, so that a pause in the motion does not change the ridge.
 const SQUARES_S: f64 = 20.0;
 
-/// Minimises `sum_i kept^(t-i) (y_i - theta q_i)^2`: the information matrix `R = kept R + q q'` and the vector `kept z + q y` are
-/// updated, and `theta` follows from a Cholesky factorisation (Ljung, System Identification, 1999, section 11.2). A ridge in
-/// proportion to each column's own mean square, towards the parameters known before, stands for the inverse of the first
-/// covariance and is not forgotten: without motion the covariance of the usual recursion grows beyond all bounds.
+/// Minimises `sum_i kept^(t-i) (y_i - theta q_i)^2`: the information matrix `R = kept R + q q'` and the vector
+/// `kept z + q y` are updated, and `theta` follows from a Cholesky factorisation (Ljung, System Identification, 1999,
+/// section 11.2). A ridge in proportion to each column's own mean square, towards the prior parameters, replaces the
+/// inverse of the initial covariance and is not forgotten: without motion the covariance of the usual recursion grows
+/// without bound.
 #[derive(Clone, Debug)]
 pub(super) struct Rls<const N: usize> {
     kept: f64,
@@ -24,7 +26,7 @@ pub(super) struct Rls<const N: usize> {
 }
 
 impl<const N: usize> Rls<N> {
-    /// A memory (s), and a ridge in seconds of typical columns that say "as before".
+    /// Creates a regression with a memory (s), and a ridge in seconds of typical columns that confirm the prior.
     pub(super) fn new(memory_s: f64, ridge_s: f64, rate_hz: f64) -> Self {
         Self {
             kept: kept(memory_s, rate_hz),
@@ -37,7 +39,7 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// Takes in the columns `q` of one sample and its target.
+    /// Adds the columns `q` of one sample and its target.
     pub(super) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
         self.seen = (self.seen + 1.0).min(self.squares_ticks);
         let share = 1.0 / self.seen;
@@ -50,7 +52,7 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// The same samples in other units: column `j` becomes `factors[j]` times what it was.
+    /// Converts the samples to other units: column `j` is multiplied by `factors[j]`.
     pub(super) fn rescale(&mut self, factors: &[Lanes; N]) {
         for (j, factor) in factors.iter().enumerate() {
             for (sum, other) in self.gram[j].iter_mut().zip(factors).take(j + 1) {
@@ -61,7 +63,7 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// The parameters, shrunk towards `prior`; that itself where nothing is known.
+    /// Returns the parameters, shrunk towards `prior`; `prior` itself without any data.
     pub(super) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
         let mut factor = [[Lanes::ZERO; N]; N];
         let mut inverse = [Lanes::ZERO; N];
@@ -99,7 +101,6 @@ impl<const N: usize> Rls<N> {
     }
 }
 
-/// Sum of the products of the entries.
 pub(super) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
     a.iter().zip(b).fold(Lanes::ZERO, |sum, (a, b)| sum + *a * *b)
 }

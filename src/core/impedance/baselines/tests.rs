@@ -77,7 +77,7 @@ fn an_autoregressive_model_predicts_an_oscillation() {
 fn a_wave_is_decoded_to_the_force_and_the_change_of_speed() {
     let mut waves = Waves::new(RATE_HZ);
     let mut wave = waves.step(&motion(0.0, 0.0), Some(force(0.7)));
-    assert!((wave.force(&motion(0.0, 0.0))[0] - 0.7).abs() < 1e-9, "no motion: the force as it came");
+    assert!((wave.force(&motion(0.0, 0.0))[0] - 0.7).abs() < 1e-9, "no motion: the received force");
     for k in 0..1000 {
         let t = f64::from(k) * 1e-3;
         wave = waves.step(&motion(0.0, 0.1 * (7.0 * t).sin()), Some(force(2.0 * (7.0 * t).sin())));
@@ -90,8 +90,8 @@ fn a_wave_is_decoded_to_the_force_and_the_change_of_speed() {
     assert!((wave.force(&motion(0.0, v + 0.02))[0] - (f - 0.02 * b)).abs() < 1e-9);
 }
 
-/// A spring of 500 N/m behind a link of `delay` ticks, pressed 8 mm deep twice a second for 4 s: the energy that was given to the hand
-/// (without what the hand gave), and that the tissue returned, J.
+/// Presses a spring of 500 N/m behind a link of `delay` ticks 8 mm deep twice per second for 4 s. Returns the energy
+/// given to the hand (without the hand's own work) and the energy that the tissue returned, J.
 fn cycled(delay: usize, controlled: bool) -> [f64; 2] {
     let mut follower = Returned::new(RATE_HZ);
     let mut controller = Controller::new(RATE_HZ);
@@ -171,7 +171,7 @@ fn the_leader_renders_what_the_follower_predicted() {
             link.push(*follower.parcel());
             let rendered = leader.step(&sample.position_m, k.checked_sub(30).map(|k| &link[k]));
             assert_eq!(rendered.force(mode), follower.report().prediction(mode), "{mode}, tick {k}");
-            assert_eq!(rendered.force(mode).is_some(), k >= 30, "{mode}: a force from the first parcel on");
+            assert_eq!(rendered.force(mode).is_some(), k >= 30, "{mode}: a force from the first packet on");
         }
     }
 }
@@ -253,7 +253,7 @@ proptest! {
             }
             let position_m = Vector3::from(position);
             follower.step(&Sample { t_s: k as f64 * 1e-3, position_m, force_n: Vector3::from(force) });
-            // What comes over a link is not to be trusted either.
+            // Received data are not trusted either.
             let forged = Parcel { force_n: Vector3::from(force), ..*follower.parcel() };
             for parcel in [follower.parcel(), &forged] {
                 let rendered = leader.step(&position_m, Some(parcel));
@@ -265,7 +265,7 @@ proptest! {
     }
 }
 
-/// Mostly ordinary, now and then anything: NaN, infinities, 1e300, zero.
+/// Returns mostly ordinary numbers, sometimes NaN, infinities, 1e300 or zero.
 fn any_number(usual: f64) -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => -usual..usual,

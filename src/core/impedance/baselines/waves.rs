@@ -1,22 +1,24 @@
-//! Wave variables, the way back (Niemeyer and Slotine, "Stable adaptive teleoperation", IEEE J. Oceanic Engineering 16, 1991).
+//! Wave variables, return channel (Niemeyer and Slotine, "Stable adaptive teleoperation", IEEE J. Oceanic Engineering
+//! 16, 1991).
 //!
-//! With velocity `v`, force `F` against the motion and wave impedance `b`, the waves are `u = (b v + F) / sqrt(2 b)` forwards and
-//! `w = (b v - F) / sqrt(2 b)` backwards. The follower sends `w`; the leader, whose hand imposes the velocity, decodes
-//! `F = b v - sqrt(2 b) w`. Forces here are those of the tissue on the instrument, `f = -F`.
+//! With velocity `v`, force `F` against the motion and wave impedance `b`, the waves are `u = (b v + F) / sqrt(2 b)`
+//! forwards and `w = (b v - F) / sqrt(2 b)` backwards. The follower sends `w`; the leader, whose hand imposes the
+//! velocity, decodes `F = b v - sqrt(2 b) w`. Forces here act from the tissue on the instrument, `f = -F`.
 //!
-//! Left out, because motion has no delay on its way to the follower in this loop and the follower tracks a position: the wave `u`,
-//! by which the follower would give way to the force. What is here is therefore not passive by construction.
+//! The wave `u`, by which the follower would yield to the force, is omitted, because the motion reaches the follower
+//! without delay in this loop and the follower tracks a position. This version is therefore not passive by
+//! construction.
 
 use super::kept;
 use crate::signal::{Lanes, Motion};
 
-/// Wave impedance as a share of the force over the speed in motion, `sum |(f - mean f) v| / sum v^2`: the publication leaves it to the
-/// task, and a number in N s/m would fit one device and one unit only (chosen on recordings, see docs/baselines.md).
+/// Wave impedance as a fraction of the force per speed in motion, `sum |(f - mean f) v| / sum v^2`: the publication
+/// leaves it to the task, and a number in N s/m would suit only one device and one unit (chosen on recordings, see
+/// docs/modes.md).
 const SHARE: f64 = 0.4;
 /// Memory of the sums, and of the mean force (s).
 const MEMORY_S: f64 = 20.0;
 
-/// The returning wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// `w = (b v - F) / sqrt(2 b)` at the follower (square root of W).
@@ -26,7 +28,7 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// Decoded with the leader's own velocity.
+    /// Decodes the force (N) with the leader's own velocity.
     pub(super) fn force(&self, own: &Motion) -> Lanes {
         let b = self.impedance_n_s_m;
         self.returning * (b * 2.0).sqrt() - own.v * b
@@ -38,7 +40,7 @@ pub(super) struct Waves {
     kept: f64,
     seen: f64,
     mean_n: Lanes,
-    /// `sum |(f - mean f) v|` and `sum v^2`, fading.
+    /// `sum |(f - mean f) v|` and `sum v^2`, with forgetting.
     sums: [Lanes; 2],
     last_n: Lanes,
 }
@@ -57,7 +59,7 @@ impl Waves {
     pub(super) fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> Wave {
         if let Some(force_n) = force_n {
             self.last_n = force_n;
-            // The plain mean at first, then a fading one.
+            // A plain mean at first, then one with forgetting.
             self.seen = self.seen * self.kept + 1.0;
             self.mean_n = (self.mean_n + (force_n - self.mean_n) * self.seen.recip()).settled();
             let own_n = force_n - self.mean_n;
@@ -66,7 +68,8 @@ impl Waves {
             }
         }
         let [powers, squares] = self.sums;
-        // Never zero, so that the wave carries the force; there it is small enough to add nothing to it.
+        // Never zero, so that the wave carries the force; at zero motion it is small enough to add nothing to the
+        // force.
         let b = (powers * squares.recip_or_zero() * SHARE).map(|b| b.clamp(1e-12, 1e12));
         Wave { returning: (b * motion.v + self.last_n) / (b * 2.0).sqrt(), impedance_n_s_m: b }
     }

@@ -1,18 +1,19 @@
-//! What the parameters do not explain and what stays: a slowly drifting offset, kept small.
+//! The lasting part of the force that the parameters do not explain: a slowly drifting offset, kept small.
 
 use super::super::anchored::within;
 use crate::signal::{DelayLine, Lanes};
 
-/// Memory of the learnt share, of the mean force and of the largest force (s).
+/// Memory of the learned fraction and of the mean and maximum force (s). Chosen as in `matched/mod.rs`.
 const SHARE_S: f64 = 1.0;
 const FORCE_S: f64 = 2.0;
-/// Ridge of the share, and how much of the mean force is added to an error before its weight is taken.
+/// Ridge of the fraction, and the part of the mean force that is added to an error before its weight is computed.
+/// Chosen as in `matched/mod.rs`.
 const RIDGE: f64 = 0.02;
 const FLATTEN: f64 = 0.05;
-/// The offset may be this share of the largest force of late: it must not become a reflected force.
+/// The offset may be at most this fraction of the recent maximum force, so that it does not become a reflected force.
 const BOUND: f64 = 0.1;
 
-/// Learns, per axis, what share of the residual of one delay ago is still there (0 to 1, least absolute error).
+/// Learns, per axis, the fraction of the residual of one delay ago that still remains (0 to 1, least absolute error).
 #[derive(Clone, Debug)]
 pub(super) struct Drift {
     rate_hz: f64,
@@ -39,8 +40,9 @@ impl Drift {
         }
     }
 
-    /// Takes what the parameters of `delay` ticks ago did not explain now (N), and the offset that was sent with them (N). The
-    /// residual of that time is `delay - 1` entries back: this tick's has not come yet.
+    /// Takes the force that the parameters of `delay` ticks ago do not explain now (N), and the offset that was sent
+    /// with them (N). The residual of that time is `delay - 1` entries back, because this tick's residual is still
+    /// missing.
     pub(super) fn judge(&mut self, delay: usize, unexplained_n: Lanes, sent_n: Lanes) {
         let Some(then_n) = self.residuals_n.get(delay - 1).copied() else { return };
         let size = (unexplained_n - sent_n).map(f64::abs) + self.mean_n * FLATTEN;
@@ -64,7 +66,7 @@ impl Drift {
         within(self.share * residual_n, -bound_n, bound_n)
     }
 
-    /// Nothing was measured in this tick.
+    /// Advances a tick without a measurement.
     pub(super) fn hold(&mut self) {
         let last_n = self.residuals_n.get(0).copied().unwrap_or_default();
         self.residuals_n.push(last_n);

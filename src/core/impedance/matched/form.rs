@@ -1,4 +1,4 @@
-//! The columns of a model: what a force is made of.
+//! The columns of a model; a force is computed from them.
 
 use super::{
     super::{
@@ -11,7 +11,6 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Columns of the largest form.
 pub(in super::super) const COLUMNS: usize = 25;
 
 /// The columns of one tick, or their parameters, one lane per axis.
@@ -23,22 +22,23 @@ const SLIDING: &[usize] = &[8, 11, 13];
 const COUPLED: &[usize] = &[8, 11, 23, 25];
 const PAPER: &[usize] = &[4, 7, 10, 13, 16];
 
-/// Which columns a model has; the first is a constant, positions count from a kept origin `d = x - x0`.
+/// Set of columns of a model; the first is a constant, positions count from a fixed origin `d = x - x0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `1, d, u1..u4` (position above its low-passes at 5, 20, 80, 320 ms: four Maxwell branches), acceleration, dry friction;
     /// then `d^2, d^3, d u2`.
     Tissue,
-    /// The same, and friction that grows with the force along the other axes: springs that slip (`slip.rs`).
+    /// The columns of `Tissue`, and friction that grows with the force along the other axes: springs that slip
+    /// (`slip.rs`).
     Sliding,
-    /// The same, and `d, u1..u4`, acceleration of the two other axes: the full `M`.
+    /// The columns of `Sliding`, and `d, u1..u4` and acceleration of the two other axes: the full `M`.
     Coupled,
-    /// The paper's: `1, d, v, a, d^2, v^2, a^2, ...` up to this degree.
+    /// The paper's columns: `1, d, v, a, d^2, v^2, a^2, ...` up to this degree.
     Paper(u8),
 }
 
 impl Form {
-    /// That of matched rendering: what other axes know is of use only where there are any.
+    /// Returns the form for matched rendering: columns of other axes are useful only if there are other axes.
     pub(in super::super) const fn of(settings: &Settings) -> Self {
         match settings.axes {
             1 => Self::Tissue,
@@ -47,7 +47,7 @@ impl Form {
         }
     }
 
-    /// Leading columns of each nested model, ascending.
+    /// Returns the numbers of leading columns of the nested models, ascending.
     pub(super) fn nested(self) -> &'static [usize] {
         match self {
             Self::Tissue => TISSUE,
@@ -57,12 +57,11 @@ impl Form {
         }
     }
 
-    /// All columns.
     pub(super) fn columns(self) -> usize {
         self.nested().last().copied().unwrap_or(1)
     }
 
-    /// The degree of the nested model with this many columns.
+    /// Returns the degree of the nested model with this many columns.
     pub(super) fn degree(self, columns: usize) -> u8 {
         match self {
             Self::Tissue | Self::Sliding | Self::Coupled => {
@@ -76,7 +75,7 @@ impl Form {
         }
     }
 
-    /// The position that the columns count from.
+    /// Returns the position from which the columns are computed.
     pub(super) fn position(self, posture: &Posture) -> Lanes {
         match self {
             Self::Tissue | Self::Sliding | Self::Coupled => posture.stance.x,
@@ -84,13 +83,12 @@ impl Form {
         }
     }
 
-    /// Whether it has slip columns.
     pub(super) const fn slips(self) -> bool {
         matches!(self, Self::Sliding | Self::Coupled)
     }
 
-    /// The columns of a posture. `one`: 1 in the lanes in use; `origin`: where the positions count from; `held`: what the slip
-    /// columns hold.
+    /// Returns the columns of a posture. `one`: 1 in the lanes in use; `origin`: origin of the positions; `held`:
+    /// values of the slip columns.
     pub(super) fn row(self, posture: &Posture, one: Lanes, origin: Lanes, held: &Held) -> Row {
         let mut row = [Lanes::ZERO; COLUMNS];
         let d = self.position(posture) - origin;
@@ -126,7 +124,7 @@ impl Form {
     }
 }
 
-/// `sum_j parameters_j row_j` over the leading columns.
+/// Returns `sum_j parameters_j row_j` over the leading columns.
 #[inline]
 pub(super) fn product(parameters: &Row, row: &Row, columns: usize) -> Lanes {
     dot(&parameters[..columns], row)

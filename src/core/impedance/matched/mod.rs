@@ -1,14 +1,19 @@
-//! Matched rendering: parameters cross the link, the force is made of the hand's own motion, so no late force can kick.
+//! Matched rendering: parameters cross the link, and the force is computed from the hand's own motion, so no late force
+//! can kick.
 //!
-//! The follower fits the force at its tip, `f = theta phi(motion)`, on normal equations whose memory runs on a clock that motion
-//! drives; two ridges and nested sets of columns are its experts. What each expert would have said one delay ago is compared
-//! with the force that came; the weights are a softmin of that running error, and what is sent is the weighted sum of the
-//! parameters, with the range of forces seen and a small offset. The leader puts in its own motion, which may be the
-//! follower's as it knows it (accurate) or the handle's (with a little damping passive at any delay).
+//! The follower fits the force at its tip, `f = theta phi(motion)`, on normal equations whose memory runs on a clock
+//! that motion drives; two ridges and nested sets of columns are its experts. The force that each expert would have
+//! predicted one delay ago is compared with the force measured now. The weights are a softmin of that running error.
+//! The follower sends the weighted sum of the parameters, with the range of past forces and a small offset. The leader
+//! inserts its own motion, which may be the follower's motion as estimated there (accurate) or the handle's (passive at
+//! any delay, with a little damping).
 //!
-//! Positions count from a kept origin, there is a constant, the ridge is in proportion to each column's mean square: where the
-//! paper's recipe (increments, raw columns, no constant, no ridge, degree by the error inside the window) asks for 1e6 N at
-//! the horizon, the paper's own columns under these rules ([`Form::Paper`]) do better than reflection.
+//! Positions count from a fixed origin, there is a constant, and the ridge is in proportion to each column's mean
+//! square. With the paper's recipe (increments, raw columns, no constant, no ridge, degree by the error inside the
+//! window) the force at the prediction horizon reaches 1e6 N; the paper's own columns under these rules
+//! ([`Form::Paper`]) are better than reflection.
+//!
+//! The constants were chosen on eight recordings of the first rig and on simulated palpation.
 
 mod drift;
 mod form;
@@ -40,21 +45,23 @@ use super::{
 };
 use crate::signal::{DelayLine, Lanes};
 
-/// Memories of the fit (s by the clock): the longer one, for friction across the contact, knows the tissue from the touches
-/// before. The paper's form has its window's.
+/// Memories of the fit (s by the clock). The longer one, for friction across the contact, covers the tissue of earlier
+/// touches. The paper's form uses its window instead.
 const MEMORIES_S: [f64; 2] = [1.0, 10.0];
-/// Ridges, in seconds of typical motion that say "no force", each with its memory. The last is for forms that slip.
+/// Ridges, in seconds of typical motion without force, each with its memory. The last is for forms with slip columns.
 const RIDGES: [Ridge; 3] =
     [Ridge { s: 0.0001, memory: 0 }, Ridge { s: 0.01, memory: 0 }, Ridge { s: 0.0001, memory: 1 }];
-/// Solves per second of every expert (at most one a tick); the paper's form, whose memory is short, has the second.
+/// Solves per second of every expert (at most one per tick); the paper's form, whose memory is short, uses the second
+/// value.
 const SOLVE_HZ: [f64; 2] = [150.0, 200.0];
-/// Renewals of the other experts in one of those with the long memory.
+/// Number of renewals of the other experts per renewal of an expert with the long memory: its parameters change more
+/// slowly, so that it needs less of the processor's time.
 const LONG_RENEWALS: usize = 2;
-/// Memory of the experts' errors (s by the clock), the exponent of the softmin is eight, and errors below this are equal (N).
+/// Memory of the experts' errors (s by the clock; the softmin's exponent is eight), and the error below which experts
+/// count as equal (N).
 const ERROR_S: f64 = 1.0;
 const EQUAL_N: f64 = 1e-12;
 
-/// The follower's end.
 #[derive(Clone, Debug)]
 pub(super) struct Matched {
     form: Form,
@@ -63,7 +70,6 @@ pub(super) struct Matched {
     every: usize,
     tick: usize,
     one: Lanes,
-    /// One for each memory.
     sums: Vec<Sums>,
     ridges: &'static [Ridge],
     experts: Vec<Expert>,
@@ -71,26 +77,24 @@ pub(super) struct Matched {
     drift: Drift,
     origin: Lanes,
     started: bool,
-    /// The newest columns, with springs under the load that was measured.
+    /// The newest columns, with springs loaded by the measured force.
     row: Row,
     stretch: Stretch,
     usual: Usual,
     gives: [f64; SLIPS],
-    /// The leader's springs, one delay ahead of those that it has now.
+    /// The leader's springs, one delay ahead of their current state at the leader.
     twin: Slip,
-    /// Ticks judged, by the clock.
+    /// Number of evaluated ticks, by the clock.
     judged: f64,
     model: MatchedModel,
 }
 
-/// One way to fit.
 #[derive(Debug)]
 struct Ridge {
     s: f64,
     memory: usize,
 }
 
-/// One ridge and one nested set of columns.
 #[derive(Clone, Debug)]
 struct Expert {
     ridge: usize,
@@ -127,7 +131,8 @@ impl Matched {
             weight: Lanes::ZERO,
         };
         let experts = ridges.iter().enumerate().flat_map(|(ridge, Ridge { memory, .. })| {
-            // What is known from the touches before is of use where the columns tell a contact from none: all of them.
+            // Knowledge of earlier touches helps only if the columns distinguish contact from free motion, which
+            // requires all of them.
             let least = if *memory == 0 { 0 } else { form.columns() };
             form.nested().iter().filter(move |columns| **columns >= least).map(move |&columns| expert(ridge, columns))
         });
@@ -157,17 +162,17 @@ impl Matched {
         matched
     }
 
-    /// Whether it is the mode nima, in the paper's columns.
+    /// Returns whether this is the mode nima, with the paper's columns.
     fn is_paper(&self) -> bool {
         matches!(self.form, Form::Paper(_))
     }
 
-    /// Ticks back to the parcel that the leader has now; without a delay the last one stands for it.
+    /// Returns the age in ticks of the packet that the leader has now; without a delay the last packet is used.
     pub(super) fn horizon(&self) -> usize {
         self.delay_ticks.max(1)
     }
 
-    /// Takes the follower's newest motion and force (N), `None` where either was not measured; `sent`: the model of
+    /// Adds the follower's newest motion and force (N), `None` if either was not measured; `sent`: the model of
     /// [`horizon`](Self::horizon) ticks ago. Returns the model to send.
     pub(super) fn step(
         &mut self,
@@ -192,8 +197,8 @@ impl Matched {
         &self.model
     }
 
-    /// What the leader makes of this motion with the model that it has then: that model, its columns and
-    /// its force before the limits (N).
+    /// Returns the leader's result for this motion: the model that it has then, its columns and its force before the
+    /// limits (N).
     fn leader<'a>(
         &mut self,
         posture: &Posture,
@@ -203,7 +208,7 @@ impl Matched {
         Some((sent, self.twin.step(sent, posture)))
     }
 
-    /// Goes on without learning: what was learnt stays in force.
+    /// Advances without learning: the parameters stay active.
     pub(super) fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
         let phase = self.tick % self.every;
@@ -232,7 +237,7 @@ impl Matched {
             Held::default()
         };
         let row = self.form.row(posture, self.one, self.origin, &held);
-        // A long memory loses nothing where it takes one sample in each renewal.
+        // A long memory loses nothing if it adds only one sample per renewal.
         let memories = if self.tick.is_multiple_of(self.every) { self.sums.len() } else { 1 };
         for (memory, sums) in self.sums.iter_mut().enumerate().take(memories) {
             let full = self.experts.iter().rfind(|expert| self.ridges[expert.ridge].memory == memory);
@@ -243,11 +248,11 @@ impl Matched {
         self.envelope.see(force_n, pace);
     }
 
-    /// One factorisation per ridge, spread over the ticks between two renewals.
+    /// Computes one factorisation per ridge, spread over the ticks between two renewals.
     fn solve(&mut self) {
         let phase = self.tick % self.every;
         for (ridge, Ridge { s, memory }) in self.ridges.iter().enumerate() {
-            // All on the first tick: an expert that has said nothing cannot be judged.
+            // All on the first tick: an expert without a prediction cannot be evaluated.
             if phase != self.phase(ridge) && self.tick > 0 {
                 continue;
             }
@@ -258,7 +263,7 @@ impl Matched {
                 sums.factorise(*s);
             }
             for expert in self.experts.iter_mut().filter(|expert| expert.ridge == ridge) {
-                // What is not finite is not kept and not sent.
+                // Non-finite results are neither kept nor sent.
                 if renew && let Some(found) = sums.parameters(expert.columns) {
                     expert.parameters = found;
                 }
@@ -271,7 +276,7 @@ impl Matched {
         ridge * self.every / self.ridges.len()
     }
 
-    /// How many renewals ago the parameters in force `ticks` ago were found.
+    /// Returns how many renewals ago the parameters that were active `ticks` ago were found.
     const fn renewals(&self, ridge: usize, ticks: usize) -> usize {
         let ahead = self.every - self.phase(ridge);
         (self.tick + ahead) / self.every - (self.tick.saturating_sub(ticks) + ahead) / self.every
@@ -304,7 +309,7 @@ impl Matched {
         self.drift.judge(self.horizon(), force_n - sent.clipped(*said_n), sent.offset_n);
     }
 
-    /// The experts by their weights, and what else the leader needs.
+    /// Mixes the experts by their weights and adds the other data that the leader needs.
     fn mix(&mut self, force_n: Lanes) {
         let mut parameters = [Lanes::ZERO; COLUMNS];
         let mut heaviest = (f64::NEG_INFINITY, 0);

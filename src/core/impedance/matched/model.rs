@@ -1,4 +1,4 @@
-//! What crosses the link, and the force that the hand's own motion makes of it.
+//! The model that crosses the link, and the force that the hand's own motion produces with it.
 
 use super::{
     super::{anchored::within, messages::Posture},
@@ -7,30 +7,28 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Parameters of matched rendering: `f = clip(theta phi(own motion)) + o`. No measured force is among them but in what the
-/// range and the offset (at most a tenth of the largest force) tell.
+/// Parameters of matched rendering: `f = clip(theta phi(own motion)) + o`. They contain no measured force, except
+/// through the range and the offset (at most a tenth of the maximum force).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchedModel {
-    /// Which columns.
     pub form: Form,
-    /// The degree that has the largest weight; 0: nothing is known yet.
+    /// Degree with the largest weight; 0 before anything is known.
     pub degree: u8,
     /// 1 on the axes in use.
     pub one: Lanes,
-    /// N per unit of the column, zero beyond those in use: all experts, by their weights.
+    /// N per unit of the column, zero beyond the columns in use: all experts, by their weights.
     pub parameters: [Lanes; COLUMNS],
-    /// Where positions count from (m; in the paper's form in scaled units).
+    /// Origin of the positions (m; in the paper's form in scaled units).
     pub origin: Lanes,
-    /// How far the springs of the slip columns give way per force along the other axes (m/N).
+    /// Length at which the springs of the slip columns slip, per force along the other axes (m/N).
     pub gives: [f64; SLIPS],
-    /// Least and greatest force made of the parameters (N).
+    /// Minimum and maximum force computed from the parameters (N).
     pub bounds_n: [Lanes; 2],
     /// A slow offset (N), added after the bounds.
     pub offset_n: Lanes,
 }
 
 impl MatchedModel {
-    /// Nothing is known.
     pub const NONE: Self = Self {
         form: Form::Tissue,
         degree: 0,
@@ -42,7 +40,8 @@ impl MatchedModel {
         offset_n: Lanes::ZERO,
     };
 
-    /// The force (N) for a motion; `None` without a model or where it is not finite. `slip`: this end's springs, which move on.
+    /// Returns the force (N) for a motion; `None` without a model or if the force is not finite. `slip`: this end's
+    /// springs, which are advanced.
     pub(in super::super) fn force(&self, now: &Posture, slip: &mut Slip) -> Option<Lanes> {
         if self.degree == 0 {
             return None;

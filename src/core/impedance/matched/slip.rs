@@ -1,4 +1,4 @@
-//! Friction across a contact: how far the tip drags along what it touches, under a load that only the other axes feel.
+//! Friction across a contact: the tip drags along the surface under a load that only the other axes measure.
 
 use super::{
     super::{anchored::within, messages::Posture, pace::share},
@@ -7,19 +7,19 @@ use super::{
 };
 use crate::signal::{Lanes, settled};
 
-/// Slip columns of an axis.
+/// Number of slip columns of an axis.
 pub(super) const SLIPS: usize = 2;
-/// How far each gives way under the usual force, in usual motions (rms of the position above its 20 ms low-pass). Half or twice
-/// as much gives the same error within 3 %: the fit weighs them.
+/// Length at which each spring slips under the usual force, in usual motions (rms of the position above its 20 ms
+/// low-pass). Half or twice as much changes the error by less than 3 %, because the fit weighs the columns.
 const GIVES_IN_USUAL_MOTIONS: [f64; SLIPS] = [0.5, 2.0];
 /// Memory of the usual motion and load (s by the clock).
 const USUAL_S: f64 = 20.0;
 
-/// What each slip column holds, one lane per axis.
+/// Values of the slip columns, one lane per axis.
 pub(super) type Held = [Lanes; SLIPS];
 
-/// Springs (m) that follow the tip and slip at a length in proportion to the force along the other axes: Maxwell slip under a
-/// load that changes. Without a load nothing is held, so that they forget when contact ends.
+/// Springs (m) that follow the tip and slip at a length in proportion to the force along the other axes: Maxwell slip
+/// under a changing load. Without a load they hold nothing, so they reset when contact ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stretch {
     held: Held,
@@ -27,7 +27,7 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// Takes a position, the force (N) on all axes and the lengths per force (m/N) at which the springs slip.
+    /// Adds a position, the force (N) on all axes, and the lengths per force (m/N) at which the springs slip.
     pub(super) fn step(&mut self, x: Lanes, force_n: Lanes, gives: &[f64; SLIPS]) -> &Held {
         let way = self.last.replace(x).map_or(Lanes::ZERO, |last| x - last);
         let load_n = load(force_n);
@@ -39,16 +39,17 @@ impl Stretch {
     }
 }
 
-/// The springs at the leader, and at the follower's copy of it: the load is the force that the parameters make.
+/// The springs at the leader, and the follower's copy of them: their load is the force computed from the parameters.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in super::super) struct Slip {
     stretch: Stretch,
-    /// The force of the tick before (N): the newest one needs the springs first.
+    /// The force of the previous tick (N): the newest force depends on the springs.
     said_n: Lanes,
 }
 
 impl Slip {
-    /// Moves on with the newest model that came; the columns of this motion, and what the parameters make of them (N).
+    /// Advances with the newest received model. Returns the columns of this motion and the force computed with them
+    /// (N).
     pub(super) fn step(&mut self, model: &MatchedModel, now: &Posture) -> (Row, Lanes) {
         let held = self.stretch.step(now.stance.x, self.said_n, &model.gives);
         let row = model.form.row(now, model.one, model.origin, held);
@@ -58,7 +59,7 @@ impl Slip {
     }
 }
 
-/// Usual sizes of motion (m) and force (N), over all axes, which make the springs free of units.
+/// Usual magnitudes of motion (m) and force (N), over all axes, which make the springs independent of units.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Usual {
     motion2: f64,
@@ -67,8 +68,8 @@ pub(super) struct Usual {
 }
 
 impl Usual {
-    /// Takes the position above its 20 ms low-pass and the force (N); gives the lengths per force (m/N) at which the springs
-    /// slip.
+    /// Adds the position above its 20 ms low-pass and the force (N); returns the lengths per force (m/N) at which the
+    /// springs slip.
     pub(super) fn step(&mut self, motion: Lanes, force_n: Lanes, pace: f64, rate_hz: f64) -> [f64; SLIPS] {
         self.passed += pace;
         let share = share(pace, self.passed, USUAL_S * rate_hz);
@@ -80,7 +81,7 @@ impl Usual {
     }
 }
 
-/// The length of the force along the two other axes (N).
+/// Returns the magnitude of the force along the two other axes (N).
 fn load(force_n: Lanes) -> Lanes {
     let [x, y, z, _] = force_n.0;
     let next = Lanes([y, z, x, 0.0]);
@@ -101,7 +102,7 @@ mod tests {
     #[test]
     fn a_spring_holds_slips_under_its_load_turns_round_and_forgets_without_a_load() {
         let mut stretch = Stretch::default();
-        // Force along x itself is no load for x.
+        // Force along x itself does not load x.
         let pressed_n = Lanes([50.0, 0.0, 2.0, 0.0]);
         let mut held_m = |x: f64, force_n: Lanes| stretch.step(at(x), force_n, &GIVES).map(|held| held[0]);
         let unpressed_n = Lanes([50.0, 0.0, 0.0, 0.0]);

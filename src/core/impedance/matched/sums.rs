@@ -1,4 +1,4 @@
-//! Normal equations that fade by the clock, and their nested solutions.
+//! Normal equations with forgetting by the clock, and their nested solutions.
 
 use super::{
     super::{
@@ -10,9 +10,11 @@ use super::{
 };
 use crate::signal::Lanes;
 
-/// Memory of the columns' mean squares, by which the ridge is made free of units (s by the clock).
+/// Memory of the columns' mean squares, which make the ridge independent of units (s by the clock): longer than the
+/// memory of the fit, so that a pause in the motion does not change the ridge.
 const SQUARES_S: f64 = 20.0;
-/// Memory of the mean error that flattens the weight of small errors (s by the clock), and how much of it is added.
+/// Memory of the mean error that flattens the weight of small errors (s by the clock), and the fraction of it that is
+/// added.
 const ERROR_S: f64 = 0.5;
 const FLATTEN: f64 = 0.5;
 
@@ -48,7 +50,7 @@ impl Sums {
         }
     }
 
-    /// Takes in a force (N) with its columns; `error_n`: what the newest full model leaves of it; `pace`: of the clock.
+    /// Adds a force (N) with its columns; `error_n`: its residual with the newest full model; `pace`: of the clock.
     pub(super) fn learn(&mut self, row: &Row, force_n: Lanes, error_n: Lanes, pace: f64) {
         self.seen += pace;
         let [of_squares, of_errors] =
@@ -65,7 +67,7 @@ impl Sums {
         accumulate(&mut self.gram, &mut self.right[..columns], &row[..columns], force_n, weight, fade);
     }
 
-    /// Factorises with a ridge (s of typical motion that say "no force"; the constant has none).
+    /// Factorises with a ridge (s of typical motion without force; the constant has none).
     pub(super) fn factorise(&mut self, ridge_s: f64) {
         let columns = self.columns;
         let mut ridge = self.mean_squares.map(|square| square * (ridge_s * self.rate_hz));
@@ -74,7 +76,8 @@ impl Sums {
         self.factor.renew(&mut self.gram[..elements], &mut self.right[..columns], &ridge);
     }
 
-    /// The parameters of the leading columns by the newest factorisation, zero beyond; `None` where one is not finite.
+    /// Returns the parameters of the leading columns by the newest factorisation, zero beyond; `None` if one is not
+    /// finite.
     pub(super) fn parameters(&self, columns: usize) -> Option<Row> {
         let mut found = [Lanes::ZERO; COLUMNS];
         self.factor.solve(&mut found[..columns]);

@@ -1,4 +1,5 @@
-//! What matched rendering promises: parameters only, nothing forgotten at rest, finite whatever comes.
+//! Properties of matched rendering: only parameters cross the link, nothing is forgotten at rest, the force stays
+//! finite with any input.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +10,7 @@ use super::{super::track::Track, *};
 const FORMS: [Form; 4] = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(5)];
 const MATCHED: [Form; 3] = [Form::Tissue, Form::Sliding, Form::Coupled];
 
-/// Both ends, and a link of `delay` ticks between them; the leader's own motion is handed in.
+/// Both ends, and a link of `delay` ticks between them; the leader's own motion is an argument.
 struct Pair {
     follower_track: Track,
     follower: Matched,
@@ -32,7 +33,7 @@ impl Pair {
         }
     }
 
-    /// One tick of the follower; the model that it sends.
+    /// Runs one tick of the follower; returns the model that it sends.
     fn follower(&mut self, tip_m: Vector3<f64>, force_n: Option<Vector3<f64>>) -> MatchedModel {
         let posture = self.follower_track.step(Some(tip_m.into()));
         let sent = self.link.len().checked_sub(self.delay.max(1)).map(|then| self.link[then]);
@@ -41,7 +42,7 @@ impl Pair {
         model
     }
 
-    /// One tick of the leader, after the follower's: the force for the hand.
+    /// Runs one tick of the leader, after the follower's; returns the force for the hand.
     fn leader(&mut self, hand_m: Vector3<f64>) -> Option<Vector3<f64>> {
         let Some(arrived) = self.link.len().checked_sub(self.delay + 1) else {
             self.leader_track.step(Some(hand_m.into()));
@@ -50,13 +51,13 @@ impl Pair {
         self.leader_with(&self.link[arrived].clone(), hand_m)
     }
 
-    /// One tick of the leader with a model that came.
+    /// Runs one tick of the leader with a received model.
     fn leader_with(&mut self, model: &MatchedModel, hand_m: Vector3<f64>) -> Option<Vector3<f64>> {
         let now = self.leader_track.step(Some(hand_m.into()));
         model.force(&now, &mut self.leader_slip).map(Lanes::vector)
     }
 
-    /// Both ends at one place.
+    /// Runs both ends at one place.
     fn step(&mut self, at_m: Vector3<f64>, force_n: Vector3<f64>) -> Option<Vector3<f64>> {
         self.follower(at_m, Some(force_n));
         self.leader(at_m)
@@ -67,7 +68,7 @@ fn settings(delay_s: f64) -> Settings {
     Settings { delay_s, ..Settings::default() }
 }
 
-/// A hand that presses, slides and lifts, m.
+/// Position (m) of a hand that presses, slides and lifts.
 fn hand_m(t_s: f64) -> Vector3<f64> {
     Vector3::new(
         0.004 * (TAU * 0.7 * t_s).sin() + 0.0004 * (TAU * 8.3 * t_s).sin(),
@@ -92,7 +93,7 @@ fn the_force_is_made_of_what_was_known_one_delay_ago_and_of_the_own_motion() {
             let at_m = hand_m(f64::from(k) * 1e-3);
             let noise = Vector3::new(7.0, -3.0, 11.0) * f64::from((k * 7919) % 101);
             clean.follower(at_m, Some(contact_n(at_m)));
-            // From here on the follower measures and does something else altogether; the leader's hand does not.
+            // From here on the follower measures and does something else entirely; the leader's hand does not.
             let (tip_m, force_n) =
                 if k < changed { (at_m, contact_n(at_m)) } else { (at_m + 0.01 * noise, contact_n(at_m) + noise) };
             corrupt.follower(tip_m, Some(force_n));
@@ -112,7 +113,7 @@ fn a_hand_that_leaves_when_the_link_fails_leaves_the_force_behind() {
     for form in MATCHED {
         for (delay_s, speed_m_s) in [(0.05, 0.1), (0.05, 0.3), (0.1, 0.1), (0.1, 0.2), (0.3, 0.1), (0.3, 0.3)] {
             let mut pair = Pair::new(form, &settings(delay_s));
-            // Palpation of a spring, at its deepest when the last parcel is sent.
+            // Palpation of a spring, at its deepest when the last packet is sent.
             let pressed = |k: i32| Vector3::new(0.0, 0.0, -0.0025 * (1.0 - (TAU * 1e-3 * f64::from(k)).cos()));
             let spring_n = |at_m: Vector3<f64>| Vector3::new(0.0, 0.0, (-600.0 * at_m.z).max(0.0));
             for k in 0..5500 {
@@ -154,7 +155,7 @@ fn nothing_is_forgotten_while_the_hand_stands_still() {
             pair.step(at_m, spring_n(at_m));
             pair.link.drain(..pair.link.len().saturating_sub(200));
         }
-        // The leader alone moves on: what it feels is the stiffness that was learnt a minute ago.
+        // Only the leader moves on: it feels the stiffness that was learned a minute ago.
         let model = *pair.link.last().unwrap();
         let mut force_n = |at_m: Vector3<f64>| pair.leader_with(&model, at_m).unwrap();
         let rest_n = force_n(at_m);

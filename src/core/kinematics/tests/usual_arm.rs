@@ -1,12 +1,11 @@
-//! An arm with a typical instrument, and a trocar beside its base.
+//! An arm with a typical instrument, and a trocar next to its base.
 
 use nalgebra::Vector3;
 
 use super::{Arm, ArmSettings, JOINTS, Rcm, RcmSettings};
 
-/// A trocar beside the arm's base.
 pub(super) const TROCAR_M: Vector3<f64> = Vector3::new(0.4, 0.0, -0.1);
-/// A starting pose there, stored because the search is slow.
+/// A starting pose, stored because the search is slow.
 pub(super) const READY_RAD: [f64; JOINTS] = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92];
 
 pub(super) fn arm_settings() -> ArmSettings {

@@ -1,56 +1,67 @@
-//! One number of a device: whether it has stopped changing, or is cut off at the end of its range.
+//! One number of a device: has it stopped changing, or is it cut off at the end of its range?
 //!
-//! A number can be missed only if it is known to change. It is judged after it has changed for [`LIVELY_S`] without a rest; then a rest that is
-//! [`LONGER`] times the longest one until then is a fault. A number with noise never rests by itself. One without noise (an ideal
-//! sensor, or a filter that leaves none) may rest with the arm, or at zero where nothing is touched: it is frozen only if it stops from
-//! speed while the arm goes on. What a number was like is learnt a second late, so that a fault does not become what is usual.
+//! A missing change can be detected only in a number that is known to change. A number is judged after it has changed
+//! for [`LIVELY_S`] without a rest; a rest that is then [`LONGER`] times the longest previous rest is a fault. A number
+//! with noise never rests by itself. A number without noise (from an ideal sensor, or behind a filter that removes all
+//! noise) may rest with the arm, or at zero without contact: it counts as frozen only if it stops from speed while the
+//! arm keeps moving. The properties of a number are updated with a delay of one second, so that a fault does not become
+//! normal behaviour.
 
-/// So long a number must have changed before its rest is a fault, s.
+/// Time for which a number must have changed before its rest is a fault, s. Chosen; no false alarm in 136 healthy
+/// minutes (`docs/faults.md`).
 const LIVELY_S: f64 = 3.0;
-/// A number that rests for longer is not one that changes all the time, s: data of 40 Hz, repeated at the rate of the line.
+/// A number that rests for longer does not change continuously, s: data of 40 Hz, repeated at the rate of the
+/// connection.
 const RESTLESS_S: f64 = 0.025;
-/// Shortest rest that is a fault, s, and fewest repetitions in it: 10 at 1 kHz, which leaves half of 20 ms to the rest of the path.
+/// Shortest rest that is a fault, s, and the minimum number of repetitions in it: 10 at 1 kHz, which leaves half of the
+/// 20 ms to the rest of the path.
 pub(super) const FROZEN_S: f64 = 0.010;
 const REPEATED: u32 = 3;
-/// How much longer than the longest rest so far. If each of n readings repeats the one before with probability p, the longest rest r that is
-/// seen has n p^r of about 1, so that one of 2.5 r has a chance of n^-2.5 a reading: 2e-9 after 3 s at 1 kHz.
+/// Factor by which a faulty rest exceeds the longest rest so far. If each of n readings repeats the one before with
+/// probability p, the longest observed rest r satisfies n p^r = 1 approximately, so that a rest of 2.5 r has a
+/// probability of n^-2.5 per reading: 2e-9 after 3 s at 1 kHz.
 const LONGER: f64 = 2.5;
-/// The longest rest is forgotten with this time constant, s.
+/// Time constant with which the longest rest is forgotten, s, so that one long rest does not hide faults for the rest
+/// of the day. Chosen.
 const FORGOTTEN_S: f64 = 60.0;
-/// A number turns so often a second if it has noise: tremor of 12 Hz turns 24 times, and a product of two such forces 48 times. White noise
-/// turns at two of three readings.
+/// A number has noise if it turns this often per second: tremor of 12 Hz turns 24 times, and a product of two such
+/// forces 48 times. White noise turns at two of three readings.
 const NOISY_TURNS: f64 = 60.0;
-/// Or at this share of the readings of a slow device.
+/// A number of a slow device has noise if it turns at this fraction of the readings. White noise turns at two of three.
+/// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
 const NOISY_SHARE: f64 = 0.35;
-/// Longest rest of a number without noise that is fine enough to be judged, s.
+/// Longest rest of a number without noise that is fine enough to be judged, s. A coarser one cannot be distinguished
+/// from a frozen one within the 20 ms. Chosen.
 const FINE_S: f64 = 0.003;
-/// It stopped from speed if its last step was so many times its smallest one: what comes to rest by itself passes through small steps.
+/// A number has stopped from speed if its last step was this many times its smallest step: a number that comes to rest
+/// by itself passes through small steps.
 const FROM_SPEED: f64 = 20.0;
-/// The arm goes on if its tip went so far meanwhile, m: an arm that comes to rest goes less.
+/// The arm keeps moving if its tip has travelled this far meanwhile, m: an arm that comes to rest travels less.
 const STIRRED_M: f64 = 1e-6;
-/// A force changes over this way, m: at the tip by 0.1 N on the softest tissue (100 N/m), at a wrist with the direction of the weight.
+/// A force changes over this travel, m: at the tip by 0.1 N on the softest tissue (100 N/m), at a wrist with the
+/// direction of the weight.
 const FAR_M: f64 = 1e-3;
-/// What is learnt is taken over by periods of this length, s, the last but one at the end of each.
+/// Learned properties are updated in periods of this length, s: at the end of each, from the last period but one.
 const LEARNT_S: f64 = 1.0;
-/// The end of the range: so many hits of the same extreme number, never with more than [`APART`] others between two of them. Noise of s counts
-/// hits its extreme again with a chance of about 1/s: eight times 1e-7 for the worst, s = 10, which is mostly found to be [`COARSE`] first.
+/// The end of the range is detected by this many hits of the same extreme number, with at most [`APART`] other readings
+/// between two of them. Noise of s counts hits its extreme again with a probability of about 1/s: eight hits have 1e-7
+/// in the worst case, s = 10, which is usually classified as [`COARSE`] first.
 const HITS: u32 = 8;
 const APART: u32 = 20;
-/// So many hits happen to a number with few values; it is not judged for [`LIVELY_S`].
+/// A number with few values produces this many hits; it is not judged for [`LIVELY_S`].
 const COARSE: u32 = 3;
 
-/// What surrounds a number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
-    /// Way of the tip so far, m.
+    /// Travel of the tip so far, m.
     pub(super) way_m: f64,
-    /// The number is a force or a torque: then it changes with the way of the tip, though it has no noise.
+    /// The number is a force or a torque: it changes with the travel of the tip even without noise.
     pub(super) is_load: bool,
     /// Shortest rest that is a fault, s.
     pub(super) shortest_s: f64,
 }
 
-/// What is wrong with a number or a reading; the first cause comes first.
+/// Fault of a number or a reading; the first cause comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Wrong {
     Frozen,
@@ -58,7 +69,6 @@ pub(super) enum Wrong {
     Saturated,
 }
 
-/// An extreme value of the last readings.
 #[derive(Clone, Copy, Debug)]
 struct Extreme {
     at: f64,
@@ -73,7 +83,8 @@ impl Extreme {
         value.to_bits() == self.at.to_bits()
     }
 
-    /// Takes the next value, for the lower extreme its negative; whether an extreme ended that was hit too often for a number with noise.
+    /// Adds the next value (for the lower extreme, its negative). Returns whether an extreme has ended that was hit too
+    /// often for a number with noise.
     fn look(&mut self, value: f64) -> bool {
         if self.is_at(value) {
             self.hits += 1;
@@ -90,24 +101,23 @@ impl Extreme {
     }
 }
 
-/// The memory of one number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Channel {
     last: f64,
     last_step: f64,
-    /// The smallest step since it has been lively.
     least_step: f64,
-    /// Since when it has this value: time and way of the tip.
+    /// Time and travel of the tip when the number took its current value.
     since_s: f64,
     since_m: f64,
     repeats: u32,
-    /// Since when it has not rested for longer than [`RESTLESS_S`].
+    /// Time since which the number has not rested for longer than [`RESTLESS_S`].
     lively_since_s: f64,
     longest_s: f64,
-    /// What was seen in this period and in the one before: the longest rest, and whether an extreme was hit too often for noise.
+    /// Observations of this period and the one before: the longest rest, and whether an extreme was hit too often for
+    /// noise.
     seen: [(f64, bool); 2],
     learns_s: f64,
-    /// Turns and changes of about the last second.
+    /// Turns and changes within about the last second.
     turns: f64,
     changes: f64,
     extremes: [Extreme; 2],
@@ -134,7 +144,7 @@ impl Channel {
         t_s: 0.0,
     };
 
-    /// Takes the number of a new reading at `t_s`; NaN is no number.
+    /// Adds the number of a new reading at `t_s`; NaN stands for a missing number.
     pub(super) fn look(&mut self, now: f64, t_s: f64, around: &Around) -> Option<Wrong> {
         if now.is_nan() || self.last.is_nan() {
             let since_s = t_s;
@@ -176,7 +186,7 @@ impl Channel {
         self.learns_s = t_s;
     }
 
-    /// It has rested: from now on it must be lively for a while again.
+    /// Restarts after a rest: the number must be lively for a while again.
     fn begin(&mut self, t_s: f64) {
         self.lively_since_s = t_s;
         self.longest_s = 0.0;
@@ -192,7 +202,6 @@ impl Channel {
         self.turns >= NOISY_TURNS.min(NOISY_SHARE * self.changes)
     }
 
-    /// Whether the rest that goes on is a fault.
     fn rest(&mut self, t_s: f64, around: &Around) -> bool {
         let stood_s = t_s - self.since_s;
         if !self.is_lively() {
@@ -201,7 +210,7 @@ impl Channel {
             }
             return false;
         }
-        // Sums of intervals are exact to some 1e-12 s.
+        // Sums of intervals are exact to about 1e-12 s.
         let is_long = stood_s >= around.shortest_s.max(LONGER * self.longest_s) - 1e-9 && self.repeats >= REPEATED;
         is_long && (self.is_noisy() || self.stopped_from_speed(around))
     }
@@ -235,7 +244,7 @@ impl Channel {
     fn is_saturated(&mut self, now: f64, t_s: f64) -> bool {
         let [high, low] = &mut self.extremes;
         self.seen[0].1 |= high.look(now) | low.look(-now);
-        // A number that rests is judged by its rest.
+        // A number at rest is judged by its rest, not by its hits.
         let often = HITS.max(self.repeats + 2);
         let hit = (high.is_at(now) && high.hits >= often) || (low.is_at(-now) && low.hits >= often);
         hit && t_s - self.coarse_s >= LIVELY_S && self.is_lively() && self.is_noisy()

@@ -1,4 +1,4 @@
-//! The readings of one device, judged by themselves.
+//! Judges the readings of one device by themselves.
 
 use super::{
     channel::{Around, Channel, Wrong},
@@ -6,7 +6,6 @@ use super::{
     repeats::Repeats,
 };
 
-/// The memory of one device of `N` numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Device<const N: usize> {
     pace: Pace,
@@ -21,12 +20,11 @@ impl<const N: usize> Device<N> {
         Self { pace: Pace::NEW, channels: [Channel::NONE; N], repeats: Repeats::new(most), wrong: None }
     }
 
-    /// What is wrong with the newest reading.
     pub(super) const fn wrong(&self) -> Option<Wrong> {
         self.wrong
     }
 
-    /// Whether this is a new reading; nothing else is looked at.
+    /// Returns the step if this is a new reading; checks nothing else.
     pub(super) fn is_new(&mut self, raw: &Raw<N>) -> Option<Step> {
         match self.pace.look(raw) {
             News::Old => None,
@@ -41,17 +39,17 @@ impl<const N: usize> Device<N> {
         }
     }
 
-    /// Looks for a block that repeats itself, in a new reading.
+    /// Checks a new reading for a repeated block.
     pub(super) fn look_for_blocks(&mut self, raw: &Raw<N>, step: &Step) {
         self.wrong = self.repeats.look(&raw.channels, step.t_s).then_some(Wrong::Repeats);
     }
 
-    /// Looks at each number of a new reading too; `around` tells what surrounds it by its place.
+    /// Checks each number of a new reading; `around` returns the surroundings of a number by its index.
     pub(super) fn look_at_all(&mut self, raw: &Raw<N>, step: &Step, around: impl Fn(usize) -> Around) {
         self.look_for_blocks(raw, step);
         for (place, (channel, now)) in self.channels.iter_mut().zip(raw.channels).enumerate() {
             let wrong = channel.look(now, step.t_s, &around(place));
-            // The first cause in the order of `Wrong`, whichever number it is of.
+            // The first cause in the order of `Wrong`, regardless of the number.
             self.wrong = [self.wrong, wrong].into_iter().flatten().min();
         }
     }

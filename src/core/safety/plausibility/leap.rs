@@ -1,17 +1,18 @@
-//! A vector that changes faster than it can: single leaps are bridged, lasting and frequent ones told.
+//! Detects a vector that changes faster than possible: single jumps are bridged, lasting or frequent ones reported.
 
 use nalgebra::SVector;
 
 use super::Fall;
 
-/// Samples in a row that are bridged; the next one is a jump.
+/// Number of consecutive samples that are bridged; the next one is a jump.
 const BRIDGED: u32 = 2;
-/// So many bridged samples, less one for each [`CALM`] good ones, are no spikes any more.
+/// This many bridged samples, minus one for each [`CALM`] good samples, are no longer treated as spikes: the fourth
+/// spike in a hundred samples is a fault (`docs/faults.md`).
 const FREQUENT: f64 = 4.0;
-/// Good samples that make up for a bridged one.
+/// Number of good samples that compensate a bridged sample. Chosen; no false alarm in 136 healthy minutes
+/// (`docs/faults.md`).
 const CALM: f64 = 25.0;
 
-/// The last vector that was believed.
 #[derive(Clone, Copy, Debug)]
 pub struct Leap<const D: usize = 3> {
     last: Option<SVector<f64, D>>,
@@ -27,15 +28,16 @@ impl<const D: usize> Default for Leap<D> {
 }
 
 impl<const D: usize> Leap<D> {
-    /// Gives the vector, or the last believed one in its place when it lies farther than `most` from it; and whether this is no spike
-    /// but a jump, or one spike too many. What has jumped is believed from then on. Where it is made of the same reading as before
-    /// (not `is_new`), what lies too far is bridged, but is no further spike.
+    /// Returns the vector, or the last accepted one if the vector is farther than `most` from it; and whether this is a
+    /// jump instead of a spike, or one spike too many. After a jump the new vector is accepted. If the vector was
+    /// computed from the same reading as before (not `is_new`), a vector that is too far away is bridged but does not
+    /// count as another spike.
     pub fn admit(&mut self, now: &SVector<f64, D>, most: f64, is_new: bool) -> (SVector<f64, D>, bool) {
         self.admit_unless(now, most, is_new, |_, _, _| Fall::No)
     }
 
-    /// The same with an excuse: what `falls` (from the believed vector, the new one, and whether that is far) is bridged until its end, which is
-    /// no jump.
+    /// Like [`Leap::admit`], with an exception: a change for which `falls` holds (given the accepted vector, the new
+    /// vector and whether it is too far away) is bridged until it ends, and is not a jump.
     pub fn admit_unless(
         &mut self,
         now: &SVector<f64, D>,
@@ -66,7 +68,7 @@ impl<const D: usize> Leap<D> {
         (*now, (far && fall != Fall::Over) || frequent)
     }
 
-    /// Between two readings the vector changes only by what else it is made of.
+    /// Handles a vector without a new reading: it changes only by its other inputs.
     fn between(&mut self, now: &SVector<f64, D>, last: &SVector<f64, D>, far: bool) -> (SVector<f64, D>, bool) {
         let believed = if far || self.in_a_row > 0 { last } else { now };
         self.moved = believed - last;
@@ -74,7 +76,7 @@ impl<const D: usize> Leap<D> {
         (*believed, self.level >= FREQUENT)
     }
 
-    /// How far the believed vector went in the last step.
+    /// Returns the change of the accepted vector in the last step.
     pub const fn moved(&self) -> &SVector<f64, D> {
         &self.moved
     }

@@ -1,13 +1,14 @@
-//! Plausibility: numbers that are finite and in time and still cannot be true.
+//! Plausibility: detects numbers that are finite and in time but cannot be true.
 //!
-//! In: one exchange's measurements ([`Observed`]: m, N, workspace frame; time in s) and the readings that they were made of
-//! ([`RawReadings`]: the devices' own frames, units and times). Out: the same with single leaps taken out ([`Admitted`]), and what cannot be
-//! true ([`Implausible`]). A reading that is looked at again is no new one: a device may be slower than the loop. Each look takes constant time
-//! and allocates nothing. What a limit is taken from stands beside it; all were tried against the ordinary scenes (`nima study faults`).
-//! Numbers that are not finite must be kept away before.
+//! In: the measurements of one exchange ([`Observed`]: m, N, workspace frame; time in s) and the readings from which
+//! they were computed ([`RawReadings`]: the devices' own frames, units and times). Out: the same measurements without
+//! single jumps ([`Admitted`]), and the quantity that cannot be true ([`Implausible`]). A reading that arrives twice is
+//! not a new reading: a device may be slower than the loop. Each check takes constant time and allocates nothing. The
+//! basis of each limit is given with it; all limits were tried against the ordinary scenes (`nima study faults`). The
+//! caller must remove non-finite numbers first.
 //!
-//! What no look can tell: a bias that creeps, a gain that is wrong from the start, axes that are exchanged before a first
-//! contact. `docs/faults.md` says how large those errors become.
+//! No check can detect a bias that creeps, a gain that is wrong from the start, or axes that are swapped before the
+//! first contact. `docs/faults.md` lists how large those errors become.
 
 mod channel;
 mod device;
@@ -31,112 +32,112 @@ pub use opposed::Opposed;
 pub use raw::{ARM_CHANNELS, CHANNELS, HANDLE_CHANNELS, Raw, RawReadings};
 pub use release::{Fall, Release};
 
-/// A handle moves no faster than this, m/s: the fastest arm movements of people reach 2 to 3 m/s in throwing, not in operating.
+/// Maximum speed of a handle, m/s: the fastest human arm movements reach 2 to 3 m/s in throwing, not in operating.
 const HAND_MAX_M_S: f64 = 3.0;
-/// An arm's tip moves no faster than this, m/s: three times the fastest command.
+/// Maximum speed of an arm's tip, m/s: three times the fastest command.
 const TIP_MAX_M_S: f64 = 1.0;
-/// Where positions may differ for other reasons than motion, m.
+/// Difference of positions that has other causes than motion, m.
 const POSITION_SLACK_M: f64 = 2e-3;
-/// A force of a resting tip changes by less than this from one sample to the next, N: nine deviations of the noisiest sensor here.
+/// Maximum change of the force of a resting tip between two samples, N: nine standard deviations of the noisiest sensor
+/// here.
 const FORCE_SLACK_N: f64 = 0.5;
-/// And by so much per metre that the tip moved, N/m: fifteen times soft tissue. With the slack it lets 15 kN/m pass at 50 mm/s.
+/// Additional change of the force per metre of tip travel, N/m: fifteen times soft tissue. With the slack it admits 15
+/// kN/m at 50 mm/s.
 const STIFFEST_N_M: f64 = 5e3;
-/// After a start or a gap the filters behind a force settle for so long: it may leap, s.
+/// Time for which the filters behind a force settle after a start or a gap, s: until then the force may jump.
 const SETTLE_S: f64 = 0.05;
-/// An arm's joints turn no faster than this together, rad/s: three times the fastest of a Gen3. So does its wrist (way of its axes).
+/// Maximum speed of an arm's joints together, rad/s: three times the fastest of a Gen3. It applies to its wrist too
+/// (travel of the axes).
 const TURN_MAX_RAD_S: f64 = 5.0;
-/// Where angles may differ for other reasons than motion, rad.
+/// Difference of angles that has other causes than motion, rad.
 const TURN_SLACK_RAD: f64 = 0.1;
-/// The tip's way between two readings of the arm is the largest of so many: arm and force sensor tick by their own clocks.
+/// The tip's travel between two readings of the arm is the largest of this many: arm and force sensor run on their own
+/// clocks.
 const WAY_READINGS: usize = 4;
-/// A torque of the sensor divided by this is compared with forces, m: a force at the tip has the lever of the shaft.
+/// A torque of the sensor divided by this length is compared with forces, m: a force at the tip acts on the lever of
+/// the shaft.
 const LEVER_M: f64 = 0.5;
-/// A tip that stands to the last bit while its command goes this far does not follow, m.
+/// If the command moves this far while the tip's position stays identical to the last bit, the tip does not follow, m.
+/// Chosen; no false alarm in 136 healthy minutes (`docs/faults.md`).
 const STUCK_COMMAND_M: f64 = 0.5e-3;
-/// A longer gap between two looks tells nothing of how far anything may have gone, s.
+/// After a longer gap between two checks the possible travel is unknown, s.
 const GAP_S: f64 = 0.015;
-/// A force that the link repeats for longer than the sensor was late is the link's, s. The silence of a sensor is told after the longest time;
-/// it is forgotten at this rate, which is slower than any delay of the link.
+/// If the link repeats a force for this much longer than the sensor was late, the link is at fault, s. The silence of a
+/// sensor is reported after the longest time; the lateness is forgotten at this rate, which is slower than any delay of
+/// the link.
 const LINK_S: f64 = 0.015;
 const LATE_MAX_S: f64 = 0.02;
 const FORGETS_LATE: f64 = 0.02;
-/// A tip so far from its command has lost it, m: an arm of 60 ms lag at the fastest command.
+/// A tip this far from its command has lost it, m: an arm with a lag of 60 ms at the fastest command.
 const ASTRAY_M: f64 = 0.02;
-/// Readings in a row that change as those of a block before: a force sensor's numbers are fine, and none of six comes twice. Whole counts of an
-/// encoder come and go, thirty times by chance once in 2^30.
+/// Number of consecutive readings that must change like an earlier block: a force sensor's numbers are fine, and none
+/// of six occurs twice. Whole encoder counts recur; thirty of them recur by chance once in 2^30.
 const SENSOR_BLOCK: u32 = 6;
 const ENCODER_BLOCK: u32 = 30;
 
-/// What cannot be true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Implausible {
-    /// A reading of the force sensor, or of the accelerometer in it, repeats itself to the last bit.
+    /// A reading of the force sensor, or of its accelerometer, repeats to the last bit.
     ForceFrozen,
     /// A number of the force sensor is cut off at the end of its range.
     ForceSaturated,
-    /// The force sensor tells a block of readings that it has told before.
+    /// The force sensor repeats an earlier block of readings.
     ForceRepeats,
-    /// The force jumped farther than any contact can make it, and not to nothing as a contact that ends.
+    /// The force jumped farther than a contact can change it, and not to zero as at the end of a contact.
     ForceJumped,
-    /// The force pushes along the motion into a contact.
+    /// The force points along the motion into a contact.
     ForceAlong,
-    /// What comes over the link repeats itself under new time stamps.
+    /// The data from the link repeat with new time stamps.
     LinkFrozen,
     /// The handle jumped farther than a hand can move it.
     HandleJumped,
-    /// The handle stands still to the last bit while its force changes.
+    /// The handle's position stays identical to the last bit while its force changes.
     HandleFrozen,
-    /// The handle tells a block of readings that it has told before.
+    /// The handle repeats an earlier block of readings.
     HandleRepeats,
     /// The arm's tip or joints jumped farther than the arm can move them.
     TipJumped,
-    /// The arm tells a block of readings that it has told before.
+    /// The arm repeats an earlier block of readings.
     ArmRepeats,
-    /// The arm does not go where it is commanded.
     ArmAstray,
 }
 
-/// What is looked at in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
-    /// Loop time, s.
     pub t_s: f64,
-    /// The readings of the devices that all of it was made of.
+    /// The devices' readings from which the other fields were computed.
     pub raw: RawReadings,
-    /// Force at the tip made of them, N.
+    /// Force at the tip computed from the readings, N.
     pub force_n: Vector3<f64>,
-    /// A force below this is none, N: what is made of a wrist sensor's reading errs by more than one at the tip does.
+    /// A force below this counts as zero, N: a force computed from a wrist sensor has a larger error than a force
+    /// measured at the tip.
     pub least_n: f64,
-    /// Orientation of the wrist by the arm, where it is known.
+    /// Orientation of the wrist from the arm, if known.
     pub world_from_s1: Option<UnitQuaternion<f64>>,
-    /// The instrument's tip in the workspace, m.
     pub tip_m: Vector3<f64>,
-    /// The handle, m (its device's axes).
+    /// Position of the handle, m (its device's axes).
     pub hand_m: Vector3<f64>,
-    /// Where the tip was commanded to be one tick ago, m; `None` while it rests.
+    /// Commanded position of the tip one tick ago, m; `None` while the tip is at rest.
     pub command_m: Option<Vector3<f64>>,
-    /// Force on the hand as commanded one tick ago, N.
+    /// Commanded force on the hand one tick ago, N.
     pub hand_force_n: Vector3<f64>,
-    /// The handle is led from the screen: then it may stand still under a force.
+    /// The handle is guided from the screen: it may then stand still under a force.
     pub guided: bool,
-    /// How long ago tip and handle came over a network, s; 0 for what is at this machine. After a gap they may have gone farther.
+    /// Age of the tip's data that came over a network, s; 0 for a device at this machine. After a gap the tip may have
+    /// moved farther.
     pub tip_silent_s: f64,
-    /// See above.
+    /// Age of the handle's data, like `tip_silent_s`.
     pub hand_silent_s: f64,
 }
 
-/// What may be used of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Admitted {
-    /// Force at the tip, N.
     pub force_n: Vector3<f64>,
-    /// The instrument's tip in the workspace, m.
     pub tip_m: Vector3<f64>,
     /// The handle, m.
     pub hand_m: Vector3<f64>,
 }
 
-/// The looks and their memory.
 #[derive(Clone, Debug)]
 pub struct Plausibility {
     sensor: Device<CHANNELS>,
@@ -145,16 +146,15 @@ pub struct Plausibility {
     link: Device<3>,
     moves: Moves,
     handle_stuck: HandleStuck,
-    /// Way of the tip so far, m.
+    /// Travel of the tip so far, m.
     way_m: f64,
-    /// When the force sensor last told something new, s, and how late it was lately.
+    /// Time of the force sensor's last new reading, s, and how late it was recently.
     felt_s: f64,
     late_s: f64,
     last_t_s: f64,
     doubt: Option<Implausible>,
 }
 
-/// The memory of what moves between two looks; nothing is known of it after a gap.
 #[derive(Clone, Debug, Default)]
 struct Moves {
     force: Leap,
@@ -167,11 +167,11 @@ struct Moves {
     opposed: Opposed,
     tip_stuck: Stuck,
     ways_m: [f64; WAY_READINGS],
-    /// Way of the tip since the newest reading of the force sensor, m.
+    /// Travel of the tip since the newest reading of the force sensor, m.
     unfelt_m: f64,
-    /// How long tip and handle had been silent at the last look, s.
+    /// Ages of the data of tip and handle at the last check, s.
     silent_s: [f64; 2],
-    /// When this began, s; not known before the first look.
+    /// Time of the first check, s; `None` before it.
     began_s: Option<f64>,
 }
 
@@ -194,19 +194,20 @@ impl Default for Plausibility {
 }
 
 impl Plausibility {
-    /// What cannot be true of the newest look, if anything.
+    /// Returns the quantity that cannot be true at the newest check, if any.
     pub fn doubt(&self) -> Option<Implausible> {
         self.doubt.or_else(|| self.link.wrong().map(|_| Implausible::LinkFrozen))
     }
 
-    /// A new engagement: what was commanded and felt before it counts no more.
+    /// Starts a new engagement: earlier commands and forces no longer count.
     pub fn engage(&mut self) {
         self.moves.opposed = Opposed::default();
         self.moves.tip_stuck = Stuck::default();
         self.handle_stuck.engage();
     }
 
-    /// The force is known from now on, or computed in another way: what it was before says nothing about a jump.
+    /// Declares that the force is known from now on, or computed in a new way: a difference from the previous force is
+    /// not a jump.
     pub fn force_is_new(&mut self) {
         let moves = &mut self.moves;
         moves.force = Leap::default();
@@ -215,7 +216,7 @@ impl Plausibility {
         moves.began_s = None;
     }
 
-    /// Takes one exchange in and gives what may be used of it.
+    /// Checks the measurements of one exchange and returns those that may be used.
     pub fn step(&mut self, seen: &Observed) -> Admitted {
         let dt_s = self.pass(seen.t_s);
         let (tip_m, tip_jumped) = self.admit_tip(seen, dt_s);
@@ -244,14 +245,15 @@ impl Plausibility {
         Admitted { force_n, tip_m, hand_m }
     }
 
-    /// Time passes until this look, s.
+    /// Advances to the time of this check; returns the time since the last one, s.
     fn pass(&mut self, t_s: f64) -> f64 {
         let dt_s = t_s - self.last_t_s;
         self.last_t_s = t_s;
         if dt_s > 0.0 && dt_s <= GAP_S {
             return dt_s;
         }
-        // After a gap, or a clock that was set, nothing is known of how far anything may have gone. What a device's numbers are like is.
+        // After a gap or a change of the clock, the possible travel is unknown. The properties of a device's numbers
+        // remain known.
         self.moves = Moves::default();
         self.handle_stuck = HandleStuck::default();
         0.0
@@ -289,7 +291,7 @@ impl Plausibility {
         self.moves.hand.admit(&seen.hand_m, most_m, moved_s.is_some())
     }
 
-    /// The force at the tip and what the sensor reads, which is more than that force at a wrist.
+    /// Checks the force at the tip and the readings of the sensor, which at a wrist contain more than that force.
     fn admit_force(&mut self, seen: &Observed, dt_s: f64) -> (Vector3<f64>, bool) {
         let moves = &mut self.moves;
         let settles = seen.t_s - *moves.began_s.get_or_insert(seen.t_s) < SETTLE_S;
@@ -303,7 +305,7 @@ impl Plausibility {
             self.sensor.look_at_all(raw, step, around);
         }
         let is_new = raw.is_none() || step.is_some();
-        // Where the sensor is at another machine it is not known how late it is.
+        // For a sensor at another machine the lateness is unknown.
         self.felt_s = if is_new { seen.t_s } else { self.felt_s };
         let late_s = if raw.is_none() { LATE_MAX_S } else { seen.t_s - self.felt_s };
         self.late_s = (self.late_s - dt_s * FORGETS_LATE).max(late_s);
@@ -329,9 +331,10 @@ impl Plausibility {
         self.moves.tip_stuck.is_stuck() || (command_m - seen.tip_m).norm() > ASTRAY_M
     }
 
-    /// Takes in the force that the link delivered, N, with its own time stamp, s.
+    /// Checks the force that the link delivered, N, with its own time stamp, s.
     ///
-    /// No force at all is no number that repeats itself: before an instrument has moved, a network answers so for as long as it takes.
+    /// A force of exactly zero is not a repeated number: before an instrument has moved, the network returns zero for
+    /// as long as that takes.
     pub fn delivered(&mut self, force_n: &Vector3<f64>, stamp_s: f64) {
         let told_n = if *force_n == Vector3::zeros() { Vector3::repeat(f64::NAN) } else { *force_n };
         let raw = Raw { channels: told_n.into(), device_s: None, arrival_s: stamp_s };
@@ -342,11 +345,11 @@ impl Plausibility {
     }
 }
 
-/// Numbers of a force sensor that are forces or torques; the others are accelerations.
+/// Number of channels of a force sensor that are forces or torques; the others are accelerations.
 const LOADS: usize = 6;
 
-/// How long a device may have moved since its last reading, s; `None` if it tells nothing new. Of a device without readings of its own the look
-/// itself is one, `since_s` after the one before.
+/// Returns how long a device may have moved since its last reading, s; `None` if its reading is not new. For a device
+/// without raw readings each check counts as a reading, `since_s` after the previous one.
 fn news<const N: usize>(device: &mut Device<N>, raw: Option<&Raw<N>>, since_s: f64) -> Option<f64> {
     let Some(raw) = raw else { return Some(since_s) };
     let step = device.is_new(raw)?;
@@ -354,7 +357,7 @@ fn news<const N: usize>(device: &mut Device<N>, raw: Option<&Raw<N>>, since_s: f
     Some(step.moved_s)
 }
 
-/// Force and torque of a reading as forces, N; 0 for what the sensor does not have.
+/// Returns force and torque of a reading as forces, N; 0 for channels that the sensor lacks.
 fn load_of(channels: &[f64; CHANNELS]) -> SVector<f64, LOADS> {
     SVector::from_fn(|place, _| {
         let number = channels[place];
@@ -363,7 +366,7 @@ fn load_of(channels: &[f64; CHANNELS]) -> SVector<f64, LOADS> {
     })
 }
 
-/// Two axes of a frame, which tell it.
+/// Returns two axes of a frame, which determine the frame.
 fn axes(turn: &UnitQuaternion<f64>) -> SVector<f64, 6> {
     let x = turn * Vector3::x();
     let z = turn * Vector3::z();

@@ -1,34 +1,38 @@
-//! The sign of the force, at each first touch: whatever is touched resists.
+//! Checks the sign of the force at each first touch: whatever is touched resists.
 //!
-//! From the moment that a free tip begins to feel something, the work of the force along the tip's way is compared with what it would
-//! be were the force along the motion all the time. A force that drives the tip into what it touches has the wrong sign, or the
-//! wrong frame. Only the first touch is judged: later another arm or a breathing patient may drive the tip. And only one that the tip makes:
-//! what comes to a tip that stands does not resist it. A hand that holds still trembles by a tenth of a millimetre, and whether that goes
-//! with a force or against it is chance.
+//! From the moment that a free tip detects a force, the work of the force along the tip's path is compared with the
+//! work that it would do if it always pointed along the motion. A force that drives the tip into the touched object has
+//! the wrong sign or the wrong frame. Only the first touch is judged, because later another arm or a breathing patient
+//! may drive the tip. And only a touch that the tip makes is judged: an object that moves against a resting tip does
+//! not resist it. A hand that holds still trembles by a tenth of a millimetre, and the direction of that tremor
+//! relative to a force is random.
 
 use nalgebra::Vector3;
 
-/// The tip must have been free for so long before a touch is judged, s.
+/// Time for which the tip must have been free before a touch is judged, s. Chosen; tested on the healthy minutes of
+/// `docs/faults.md`.
 const FREE_S: f64 = 0.05;
-/// Work that is enough for a judgement: that of the least force over this way, m.
+/// Work that suffices for a judgement, as the travel under the smallest force, m. Chosen; no false alarm in 136 healthy
+/// minutes (`docs/faults.md`).
 const ENOUGH_AT_LEAST_M: f64 = 1e-3;
-/// Way that is enough, m.
+/// Travel that suffices for a judgement, m.
 const ENOUGH_M: f64 = 0.3e-3;
-/// Share of that work which the force must give to be along the motion.
+/// Fraction of the full work above which the force points along the motion. Chosen; no false alarm in 136 healthy
+/// minutes (`docs/faults.md`).
 const ALONG: f64 = 0.7;
-/// A touch that is not judged by then will not be, s.
+/// A touch that has not been judged within this time is not judged at all, s. Chosen; no false alarm in 136 healthy
+/// minutes (`docs/faults.md`).
 const WITHIN_S: f64 = 0.3;
 /// Time constant against noise, s.
 const SMOOTHING_S: f64 = 0.002;
-/// The tip made a touch if it went so far before, m, in about this time, s: faster than 5 mm/s. Tremor of 0.15 mm an axis goes to and fro by
-/// half of that.
+/// The tip made the touch if it travelled this far before, m, within about this time, s: faster than 5 mm/s. A tremor
+/// of 0.15 mm per axis moves back and forth by half of that.
 const MADE_M: f64 = 0.5e-3;
 const BEFORE_S: f64 = 0.1;
 
-/// The memory of one touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Opposed {
-    /// How far the tip went lately, from where to where, m.
+    /// Recent displacement of the tip, m.
     went_m: Vector3<f64>,
     force_n: Vector3<f64>,
     free_s: f64,
@@ -44,8 +48,8 @@ struct Touch {
 }
 
 impl Opposed {
-    /// Takes the force (N) and the way of the tip (m) since the last look `dt_s` ago; `least_n`: a force below it is none; `led`: the tip
-    /// is commanded. Says whether a touch drives the tip into what it touches.
+    /// Adds the force (N) and the displacement of the tip (m) since the last check `dt_s` ago; a force below `least_n`
+    /// counts as zero; `led` says that the tip is commanded. Returns whether the force drives the tip into the object.
     pub fn look(&mut self, dt_s: f64, force_n: &Vector3<f64>, least_n: f64, way_m: &Vector3<f64>, led: bool) -> bool {
         self.force_n += (force_n - self.force_n) * -libm::expm1(-dt_s / SMOOTHING_S);
         self.went_m = self.went_m * libm::exp(-dt_s / BEFORE_S) + way_m;

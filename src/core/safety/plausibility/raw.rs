@@ -1,7 +1,7 @@
-//! Readings of the devices as they came: each in its device's own frame and units, before any rotation or calibration.
+//! Unprocessed readings of the devices: each in its device's own frame and units, before any rotation or calibration.
 //!
-//! A rotation of the arm changes every number of a force in the workspace, also that of a sensor that has stopped measuring. So the
-//! plausibility check judges these, and only new ones, at the times of the device.
+//! A rotation of the arm changes every component of a force in the workspace, even for a sensor that has stopped
+//! measuring. The plausibility check therefore judges these readings, only new ones, at the times of the device.
 
 /// Numbers of a haptic handle: position, m.
 pub const HANDLE_CHANNELS: usize = 3;
@@ -10,33 +10,28 @@ pub const ARM_CHANNELS: usize = 7;
 /// Numbers of a force sensor: force (N), torque (Nm), acceleration (m/s^2).
 pub const CHANNELS: usize = 9;
 
-/// One reading of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Raw<const N: usize> {
-    /// Its numbers; NaN where the device has none.
+    /// The numbers of the reading; NaN for a number that the device lacks.
     pub channels: [f64; N],
     /// Time on the device's own clock, s; `None` if it sends no time.
     pub device_s: Option<f64>,
-    /// When it arrived, s on the loop's clock. The same time twice is the same reading.
+    /// Time of arrival, s on the loop's clock. Two readings with the same time are one reading.
     pub arrival_s: f64,
 }
 
-/// The newest readings of one side; `None` for a device that is at another machine or that does not exist.
+/// The newest readings of one side; `None` for a device at another machine or a missing device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RawReadings {
-    /// The haptic handle.
     pub handle: Option<Raw<HANDLE_CHANNELS>>,
-    /// The arm.
     pub arm: Option<Raw<ARM_CHANNELS>>,
-    /// The force sensor.
     pub sensor: Option<Raw<CHANNELS>>,
 }
 
 impl RawReadings {
-    /// No device.
     pub const NONE: Self = Self { handle: None, arm: None, sensor: None };
 
-    /// Whether every number that a device must have is finite; a force sensor may lack some.
+    /// Returns whether every number that a device must have is finite; a force sensor may lack some.
     pub fn is_finite(&self) -> bool {
         self.handle.is_none_or(|raw| raw.is_finite())
             && self.arm.is_none_or(|raw| raw.is_finite())
@@ -51,7 +46,7 @@ impl<const N: usize> Raw<N> {
 }
 
 impl Raw<CHANNELS> {
-    /// A force sensor's reading from its parts: force (N), torque (Nm), acceleration (m/s^2).
+    /// Creates a force sensor's reading from its parts: force (N), torque (Nm), acceleration (m/s^2).
     pub fn of_sensor(parts: [Option<[f64; 3]>; 3], device_s: Option<f64>, arrival_s: f64) -> Self {
         let mut channels = [f64::NAN; CHANNELS];
         for (to, part) in channels.chunks_exact_mut(3).zip(parts) {
@@ -61,25 +56,25 @@ impl Raw<CHANNELS> {
     }
 }
 
-/// Readings between which the usual interval is averaged.
+/// Number of readings over which the usual interval is averaged.
 const AVERAGED: f64 = 16.0;
-/// A longer interval counts as so many usual ones: the loop was late, and the readings between were not seen.
+/// A longer interval counts as this many usual ones: the loop was late and missed the readings in between.
 const LONGEST_INTERVALS: f64 = 2.0;
-/// A device's clock may be ahead of the arrivals by this, s: lines hold readings back for less.
+/// A device's clock may be ahead of the arrivals by this, s: connections delay readings by less.
 const HELD_BACK_S: f64 = 0.02;
-/// What is older than the reading before by less than this comes late, s; a clock that was set goes back further.
+/// A reading whose time is earlier than the previous one by less than this arrived out of order, s; a clock that was
+/// set goes back further.
 const SWAPPED_S: f64 = 1.0;
 
-/// Time of a new reading.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    /// Sum of the intervals so far, s; none counts for more than [`LONGEST_INTERVALS`] usual ones.
+    /// Sum of the intervals so far, s; each counts for at most [`LONGEST_INTERVALS`] usual intervals.
     pub(super) t_s: f64,
-    /// How long the device may have moved since the reading before, s.
+    /// Time for which the device may have moved since the previous reading, s.
     pub(super) moved_s: f64,
 }
 
-/// Tells new readings from old ones.
+/// Distinguishes new readings from old ones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
     last: Option<(f64, Option<f64>)>,
@@ -87,10 +82,10 @@ pub(super) struct Pace {
     t_s: f64,
 }
 
-/// Outcome of a look at a device.
+/// Result of checking a device for a new reading.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum News {
-    /// The same reading as before, or none that has a time.
+    /// The same reading as before, or a reading without a time.
     Old,
     /// The first reading, or the first after the clock was set back.
     First,

@@ -1,4 +1,5 @@
-//! Raw readings of a rig with an arm: the loop sees a force that turns with the arm, the sensor's own numbers are what is judged.
+//! Raw readings of a rig with an arm: the loop receives a force that turns with the arm, but the sensor's own numbers
+//! are judged.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -6,18 +7,17 @@ use super::*;
 use crate::noise::Noise;
 
 const TICK_S: f64 = 1e-3;
-/// An engaged rig has run for so long, s.
+/// Time for which a rig was engaged before the fault, s.
 const BEFORE_S: f64 = 14.0;
 
-/// What a device does wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
     Frozen,
     OneFrozen,
-    /// All of it is beyond the end of the range.
+    /// All values are beyond the end of the range.
     Saturated,
-    /// About half of it is.
+    /// About half of the values are beyond it.
     Hovers,
     Block(usize),
     Jump,
@@ -25,13 +25,13 @@ enum Fault {
 
 #[derive(Clone, Copy, Debug)]
 struct Rig {
-    /// Time between two readings of sensor, handle and arm, s.
+    /// Intervals between two readings of sensor, handle and arm, s.
     sensor_s: f64,
     handle_s: f64,
     arm_s: f64,
     noise_n: f64,
     at_wrist: bool,
-    /// Share of the ticks that are late, by up to 4 ms.
+    /// Fraction of the ticks that are late, by up to 4 ms.
     late: f64,
     seed: u64,
 }
@@ -39,7 +39,7 @@ struct Rig {
 const RIG: Rig =
     Rig { sensor_s: TICK_S, handle_s: TICK_S, arm_s: TICK_S, noise_n: 0.02, at_wrist: false, late: 0.0, seed: 1 };
 
-/// The newest reading of a device that measures by its own clock.
+/// The newest reading of a device that measures on its own clock.
 struct Sampled<const N: usize> {
     every_s: f64,
     next_s: f64,
@@ -118,7 +118,8 @@ fn load(rig: &Rig, noise: &mut Noise, t_s: f64) -> [f64; CHANNELS] {
     channels
 }
 
-/// The first doubt after the beginning of the faults of sensor, handle and arm, and its time since then, ms; a doubt before is a false alarm.
+/// Returns the first doubt after the faults of sensor, handle and arm begin, and the time since then, ms; an earlier
+/// doubt is a false alarm.
 fn told(rig: &Rig, faults: [Fault; 3], seconds: f64) -> Option<(f64, Implausible)> {
     let mut looks = Plausibility::default();
     let mut noise = Noise::new(rig.seed);
@@ -180,7 +181,7 @@ fn a_sensor_on_an_arm_is_judged_by_its_own_numbers() {
                     let rig = Rig { at_wrist, late, seed, ..RIG };
                     let told = of_sensor(&rig, fault);
                     let late_ms = if late > 0.0 { 5.0 } else { 0.0 };
-                    // Two values in turn, of which a late loop misses some, are at an extreme each second time.
+                    // Of two alternating values, some of which a late loop misses, every second one is at an extreme.
                     let is_wanted = |what| {
                         what == wanted
                             || (fault == Fault::Block(2) && late > 0.0 && what == Implausible::ForceSaturated)
@@ -201,7 +202,8 @@ fn a_sensor_without_noise_that_stops_from_speed_is_frozen_while_the_arm_goes_on(
     }
 }
 
-/// The sensor of the examples, one axis without noise, frozen at every phase of its swing: also where it turns.
+/// The sensor of the examples, with one noise-free axis, frozen at every phase of its swing, including the turning
+/// points.
 #[test]
 fn a_smooth_swing_that_freezes_is_told_at_every_phase() {
     for phase in 0..200 {
@@ -264,7 +266,7 @@ fn a_handle_and_an_arm_that_repeat_a_block_or_jump_are_told() {
 
 #[test]
 fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
-    // After ten lively seconds the handle lies in whole counts, one of which flickers, and the arm holds its angles.
+    // After ten lively seconds the handle rests in whole counts, one of which flickers, and the arm holds its angles.
     let mut looks = Plausibility::default();
     let mut noise = Noise::new(3);
     for k in 1..40_000 {
@@ -296,7 +298,7 @@ fn a_handle_on_the_table_and_an_arm_at_rest_are_no_fault() {
     }
 }
 
-/// A sensor of few values says the same thing often, and at its extremes.
+/// A sensor with few values often repeats itself, also at its extremes.
 #[test]
 fn coarse_numbers_are_no_fault() {
     for counts in [0.3, 1.0, 3.0, 10.0, 50.0] {
@@ -313,7 +315,7 @@ fn coarse_numbers_are_no_fault() {
     }
 }
 
-/// A sensor that is late for 18 ms leaves the same force in the link for as long, 50 ms later.
+/// A sensor that is late by 18 ms leaves the same force in the link for as long, 50 ms later.
 #[test]
 fn a_late_sensor_is_not_a_link_that_repeats_itself_and_a_link_that_does_is_told() {
     let told = |link_stops: bool| {

@@ -1,46 +1,46 @@
-//! A contact that ends: the force falls to nothing within a few samples, while the tip hardly moves.
+//! Recognises a contact that ends: the force falls to zero within a few samples, while the tip hardly moves.
 //!
-//! What was held under force snaps away as fast as its mass lets it: a ring of 1.5 g on a contact of 4 kN/m takes some 3 ms. So the force falls in
-//! several samples, and a sensor's own filter spreads it over more. A sensor that fails steps from one sample to the next, or stops somewhere
-//! else than at nothing. A force that grows is never excused.
+//! An object held under force snaps away as fast as its mass allows: a ring of 1.5 g on a contact of 4 kN/m takes about
+//! 3 ms. The force therefore falls over several samples, and a sensor's own filter spreads the fall further. A failing
+//! sensor steps from one sample to the next, or stops at a value other than zero. A growing force is never excused.
 
 use nalgebra::Vector3;
 
-/// Nothing is left of a force below this, N: the noise of the noisiest sensor here.
+/// A force below this counts as zero, N: the noise of the noisiest sensor here.
 const GONE_N: f64 = 0.5;
-/// It falls by at least this from one sample to the next, N; noise does not.
+/// A fall decreases by at least this from one sample to the next, N; noise does not.
 const FALLS_N: f64 = 0.1;
-/// A fall of which more than this share comes in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz.
+/// A fall with more than this fraction in one sample is a step. Rings that snap away have 0.38 to 0.6 at 1 kHz
+/// (`docs/faults.md`); a sensor that steps has 1.
 const SHARPEST: f64 = 0.65;
-/// It has begun by so many samples before the first one that lies too far.
+/// A fall begins at most this many samples before the first sample that is too far away. Chosen on the study of faults
+/// (`docs/faults.md`).
 const BEFORE: usize = 4;
-/// Samples in which it must have come to an end.
+/// Maximum number of samples until a fall must have ended. Chosen on the study of faults: with it, every case there
+/// keeps its verdict, and rings that snap away are excused (`docs/faults.md`).
 const LONGEST: u32 = 6;
 
-/// What a force that changes too fast is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fall {
-    /// It does not fall.
     #[default]
     No,
-    /// It falls, and has not yet come to its end.
+    /// The force falls and has not reached zero yet.
     Going,
-    /// It has fallen to nothing, as a contact that ends.
+    /// The force has fallen to zero, as at the end of a contact.
     Over,
 }
 
-/// The memory of one fall.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Release {
     fall: Option<Falling>,
-    /// The last samples that did not lie too far, the newest first.
+    /// The last samples that were not too far away, the newest first.
     before_n: [Vector3<f64>; BEFORE],
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Falling {
     believed_n: Vector3<f64>,
-    /// The largest of what was before.
+    /// The largest of the samples before the fall.
     from_n: Vector3<f64>,
     size_n: f64,
     sharpest_n: f64,
@@ -49,7 +49,7 @@ struct Falling {
 }
 
 impl Release {
-    /// Takes a sample (N) that lies too far from the one that was believed last, or that does not (`far`).
+    /// Adds a sample (N); `far` says that it is too far from the last accepted one.
     pub fn look(&mut self, believed_n: &Vector3<f64>, now_n: &Vector3<f64>, far: bool) -> Fall {
         if !far {
             self.fall = None;
@@ -57,7 +57,7 @@ impl Release {
             self.before_n[0] = *now_n;
             return Fall::No;
         }
-        // What is believed stays the same as long as a fall is bridged.
+        // The accepted force stays the same as long as a fall is bridged.
         let going = self.fall.filter(|fall| fall.believed_n == *believed_n);
         let mut fall = going.unwrap_or_else(|| self.begin(believed_n));
         let doing = fall.look(now_n);
@@ -82,7 +82,7 @@ impl Falling {
         let size_n = now_n.norm();
         let falls_n = self.size_n - size_n;
         let is_gone = size_n <= GONE_N;
-        // It may not turn aside, nor to the other side, by more than what counts as nothing.
+        // The force may not turn sideways, or to the opposite side, by more than the force that counts as zero.
         let along_n = if from_n > 0.0 { now_n.dot(&self.from_n) / from_n } else { 0.0 };
         let aside_n = (now_n.norm_squared() - along_n * along_n).max(0.0).sqrt();
         self.falls &= aside_n <= GONE_N && along_n >= -GONE_N && (is_gone || falls_n >= FALLS_N);

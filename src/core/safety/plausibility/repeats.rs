@@ -1,47 +1,49 @@
-//! A device that tells the same block of readings again and again, as from a buffer that is not filled any more.
+//! Detects a device that sends the same block of readings again and again, for example from a buffer that is no longer
+//! filled.
 
-/// Readings that are kept: the longest block that is found.
+/// Number of stored readings: the longest block that can be found.
 const KEPT: usize = 256;
-/// Readings in a row that must be the same as those of a block before, at least.
+/// Minimum number of consecutive readings that must equal an earlier block.
 const RUN: u32 = 10;
-/// Readings of a block that a late loop did not see the first time.
+/// Maximum number of readings of a block that a late loop missed the first time.
 const MISSED_MAX: u32 = 2;
-/// A quarter of the changes that are a fault, but not fewer than two, come again by chance for a device that has few values; it is not judged for
-/// [`CLEAN_S`]. A device for which that happens less than once in 3 s repeats all of them less than once in 1e9 s.
+/// For a device with few values, a quarter of the changes that are a fault (at least two) recur by chance; such a
+/// device is not judged for [`CLEAN_S`]. A device for which that happens less than once in 3 s repeats all of them less
+/// than once in 1e9 s.
 const BY_CHANCE: u32 = 2;
 const CLEAN_S: f64 = 3.0;
 
-/// The last readings, each as one word.
+/// The recent readings, each hashed to one word.
 #[derive(Clone, Debug)]
 pub(super) struct Repeats {
     words: [u64; KEPT],
     count: usize,
-    /// Length of the block that repeats itself now; 0 if none does.
+    /// Length of the block that currently repeats; 0 if none does.
     lag: usize,
     run: u32,
-    /// Readings within the run that were not seen before.
+    /// Readings within the run that were not seen the first time.
     missed: u32,
-    /// Changes from reading to reading in that run.
+    /// Number of changes from reading to reading in that run.
     changes: u32,
-    /// Changes that make the run a fault.
+    /// Number of changes that makes the run a fault.
     most: u32,
     clean_since_s: f64,
     told: bool,
 }
 
 impl Repeats {
-    /// `most` changes in a row that have all been before are a fault.
+    /// Treats a run with `most` changes that all occurred before as a fault.
     pub(super) const fn new(most: u32) -> Self {
         let words = [0; KEPT];
         Self { words, count: 0, lag: 0, run: 0, missed: 0, changes: 0, most, clean_since_s: f64::NAN, told: false }
     }
 
-    /// See [`Repeats::new`].
+    /// Returns the limit of [`Repeats::new`].
     pub(super) const fn most(&self) -> u32 {
         self.most
     }
 
-    /// Takes a reading at `t_s`; whether it is one of a block that has been before.
+    /// Adds a reading at `t_s`; returns whether it belongs to a repeated block.
     pub(super) fn look<const N: usize>(&mut self, channels: &[f64; N], t_s: f64) -> bool {
         let word = word_of(channels);
         if self.clean_since_s.is_nan() {
@@ -72,28 +74,28 @@ impl Repeats {
         self.told
     }
 
-    /// Whether its readings hardly ever come twice; positions of a slow hand do.
+    /// Returns whether readings hardly ever occur twice; positions of a slow hand do.
     const fn is_fine(&self) -> bool {
         self.most < RUN
     }
 
-    /// A late loop does not see every reading of a block: the run goes on at another place.
+    /// Continues the run at another place, because a late loop does not receive every reading of a block.
     fn skipped(&self, word: u64, changes: bool) -> Option<usize> {
         (self.is_fine() && self.lag > 0 && changes).then(|| self.find(word)).filter(|lag| *lag > 0)
     }
 
-    /// The reading so many ago.
+    /// Returns the reading `ago` readings back.
     const fn before(&self, ago: usize) -> u64 {
         self.words[(self.count + KEPT - ago) % KEPT]
     }
 
-    /// How many readings ago this one was last; 0 if it was not.
+    /// Returns how many readings ago this one last occurred; 0 if it has not.
     fn find(&self, word: u64) -> usize {
         (2..=self.count.min(KEPT)).find(|ago| self.before(*ago) == word).unwrap_or(0)
     }
 }
 
-/// All numbers of a reading as one word (FNV-1a over words); one in 2^64 others has the same.
+/// Hashes all numbers of a reading to one word (FNV-1a over words); one reading in 2^64 collides.
 fn word_of<const N: usize>(channels: &[f64; N]) -> u64 {
     channels.iter().fold(0xcbf2_9ce4_8422_2325, |word, channel| {
         let mixed = (word ^ channel.to_bits()).wrapping_mul(0x0100_0000_01b3);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// One look at 1 kHz; noise of 0.02 N so that nothing is frozen.
+/// Checks at 1 kHz; noise of 0.02 N so that nothing is frozen.
 struct Bench {
     plausibility: Plausibility,
     noise: crate::noise::Noise,
@@ -50,7 +50,6 @@ fn after(edit: impl FnMut(u32, &mut Observed)) -> Option<(u32, Implausible)> {
     bench.run(500, edit)
 }
 
-/// The force sensor's numbers.
 fn sensed(seen: &mut Observed) -> &mut [f64; CHANNELS] {
     &mut seen.raw.sensor.as_mut().unwrap().channels
 }
@@ -115,7 +114,7 @@ fn a_step_is_told_in_three_ticks_and_a_spike_is_taken_out() {
 
 #[test]
 fn a_stiff_contact_is_no_jump() {
-    // 5000 N/m at 60 mm/s: 0.3 N a tick.
+    // 5000 N/m at 60 mm/s: 0.3 N per tick.
     let mut bench = Bench::new();
     let press = |k: u32, seen: &mut Observed| {
         let depth_m = f64::from(k.saturating_sub(200)) * 6e-5;
@@ -128,8 +127,8 @@ fn a_stiff_contact_is_no_jump() {
     assert_eq!(bench.run(500, press), None);
 }
 
-/// What is told of a force of these sizes (N, one a sample) after a contact of 2.6 N that lasts for a while, at a tip that stands still; they
-/// come again and again, so many samples apart.
+/// Returns the fault reported for a force with these values (N, one per sample) after a contact of 2.6 N, while the tip
+/// stands still; with `again` the values recur this many samples apart.
 fn told_of(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausible)> {
     let mut kept = None;
     after(|k, seen| {
@@ -139,7 +138,7 @@ fn told_of(sizes_n: &[f64], again: Option<u32>) -> Option<(u32, Implausible)> {
         let since = k.checked_sub(50).map(|since| again.map_or(since, |again| since % again));
         let size_n = since.map_or(pressed_n, |since| match sizes_n.get(since as usize) {
             Some(size_n) => *size_n,
-            // Pressed again, slowly, if it comes again.
+            // If the force recurs, press again slowly.
             None if again.is_some() => (0.2 * f64::from(since - sizes_n.len() as u32)).min(2.6),
             None => sizes_n.last().copied().unwrap_or(pressed_n),
         });
@@ -194,7 +193,7 @@ fn a_force_along_the_way_into_a_contact_is_told_and_a_puncture_is_not() {
 
 #[test]
 fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to_it() {
-    // The tip holds still, trembles, and is pulled by 1.3 N from some moment on: another hand takes what it holds.
+    // The tip holds still, trembles, and from some moment on is pulled by 1.3 N: another hand takes the held object.
     let pulled = |from: u32, goes_m_s: f64| {
         Bench::new().run(900, move |k, seen| {
             let t_s = f64::from(k) * 1e-3;
@@ -226,7 +225,7 @@ fn the_sign_is_judged_of_a_touch_that_the_tip_makes_and_not_of_one_that_comes_to
 
 #[test]
 fn an_error_of_the_force_below_the_least_one_is_no_touch() {
-    // Friction that was taken out too much pushes along the motion.
+    // Overcompensated friction pushes along the motion.
     let told = |least_n: f64| {
         Bench::new().run(600, move |k, seen| {
             let at_m = Vector3::new(0.0, 0.0, 0.010 - 5e-5 * f64::from(k));
@@ -260,7 +259,7 @@ fn what_stands_while_its_cause_moves_is_stuck() {
         seen.hand_force_n = Vector3::x() * 0.6;
     });
     assert!(matches!(told, Some((100..=103, Implausible::HandleFrozen))), "{told:?}");
-    // A machine leads it for five seconds, and lets it stand under its force.
+    // A machine guides the handle for five seconds and then lets it stand still under its force.
     let mut bench = Bench::new();
     let mut kept = Vector3::zeros();
     let led = |k: u32, seen: &mut Observed| {
@@ -284,7 +283,7 @@ fn what_stands_while_its_cause_moves_is_stuck() {
     assert!(matches!(told, Some((1, Implausible::ArmAstray))), "{told:?}");
 }
 
-/// Whether the link is in doubt after four seconds of noise and then this force for half a second, N.
+/// Returns whether the link is in doubt after four seconds of noise and then half a second of this force, N.
 fn link_doubted_after(force_n: Vector3<f64>) -> bool {
     let mut looks = Plausibility::default();
     let mut noise = crate::noise::Noise::new(5);
@@ -301,7 +300,7 @@ fn a_link_that_repeats_a_force_is_frozen_and_one_without_any_force_is_not() {
     assert!(!link_doubted_after(Vector3::zeros()));
 }
 
-/// What moves at 0.2 m/s and is not heard of for 40 ms is 8 mm farther.
+/// A tip that moves at 0.2 m/s and is silent for 40 ms is 8 mm farther.
 #[test]
 fn what_went_on_while_the_line_was_silent_has_not_jumped() {
     let told = |is_known: bool, is_tip: bool| {

@@ -1,4 +1,4 @@
-//! Runs the exchanges: sends, receives answers, times out, and decides when the servos are lost.
+//! Runs the exchanges: sends, receives answers, times out, and determines when the servos are lost.
 
 use super::{
     super::{
@@ -24,7 +24,6 @@ impl<T: Bytes> Driver<T> {
         Ok(reading)
     }
 
-    /// Reads what has arrived.
     fn listen(&mut self, now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
         let mut newest = None;
         let mut buffer = [0; 256];
@@ -56,7 +55,7 @@ impl<T: Bytes> Driver<T> {
         Ok(newest)
     }
 
-    /// Handles a status packet: as part of the expected answer, or counts why it is not.
+    /// Handles a status packet: as part of the expected answer, or counts the reason why it is not.
     fn take(&mut self, id: u8, body: &[u8], now_s: f64) -> Result<Option<Stamped<ServoReading>>, Loss> {
         let plain = body.len() == MOTION_BYTES + 1;
         let condition = body.len() == CONDITION_BYTES + 1;
@@ -95,7 +94,7 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// Stores one servo's part of a reading; false if the servo refused.
+    /// Stores one servo's part of a reading; returns false if the servo refused.
     fn take_motion(&mut self, index: usize, error: u8, data: &[u8]) -> bool {
         if error & ALERT != 0 {
             self.alert.get_or_insert(index);
@@ -172,7 +171,7 @@ impl<T: Bytes> Driver<T> {
         if error.is_any() {
             return Err(Loss::Device { code: Fault { id: servo.id, error }.code() });
         }
-        // Repeat a torque command that may have been lost on the line: a sync write has no answer.
+        // Repeat a torque command that may have been lost on the line, because a sync write has no answer.
         match self.torque {
             Torque::On if !torque_on => self.torque = Torque::Wanted,
             Torque::Off if torque_on => self.torque = Torque::Ending,
@@ -181,7 +180,7 @@ impl<T: Bytes> Driver<T> {
         Ok(())
     }
 
-    /// Gives up an exchange that is not answered in time.
+    /// Abandons an exchange that is not answered in time.
     fn expire(&mut self, now_s: f64) {
         let Some(exchange) = self.exchange.filter(|exchange| now_s >= exchange.until_s) else { return };
         self.exchange = None;
@@ -191,7 +190,6 @@ impl<T: Bytes> Driver<T> {
         }
     }
 
-    /// Starts the next exchange.
     fn ask(&mut self, now_s: f64) -> Result<(), Loss> {
         if self.reboots.is_any() {
             return Err(Loss::Silent);

@@ -1,4 +1,4 @@
-//! Every instruction and the status packet, encoded and decoded, against the test vectors of the reference.
+//! Every instruction and the status packet, encoded and decoded, compared with the test vectors of the reference.
 
 use super::{
     super::{

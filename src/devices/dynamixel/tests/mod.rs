@@ -1,4 +1,4 @@
-//! The protocol against known frames and arbitrary bytes.
+//! The protocol with known frames and arbitrary bytes.
 
 mod messages;
 mod packets;

@@ -9,7 +9,7 @@ pub(super) fn hex(text: &str) -> Vec<u8> {
     text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// Id, instruction and body of every packet in `bytes`, and the counters of refused data.
+/// Returns id, instruction and body of every packet in `bytes`, and the counters of refused data.
 fn packets(incoming: &mut Incoming, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     let mut taken = 0;
@@ -33,7 +33,7 @@ fn stuffing_goes_in_and_comes_out() {
         assert_eq!(out.bytes(), hex(wire));
         assert_eq!(packets(&mut Incoming::new(64), &hex(wire)), [(1, 3, hex(data))]);
     }
-    // As a known client sends it: without any stuffing.
+    // Sent without any stuffing, as by a known client.
     let bare = "FF FF FD 00 01 09 00 03 E2 00 FF FF FD 05 4B 97";
     assert_eq!(packets(&mut Incoming::new(64), &hex(bare)), [(1, 3, hex("E2 00 FF FF FD 05"))]);
 }

@@ -9,27 +9,25 @@ use std::{
 static OPEN_DEVICES: AtomicUsize = AtomicUsize::new(0);
 /// Set when the program ends: threads that own a device must close it.
 static ENDING: AtomicBool = AtomicBool::new(false);
-/// How long the end of the program waits for that.
+/// Maximum time for which the end of the program waits for that.
 const END_MAX: Duration = Duration::from_millis(300);
 
-/// Counts a device that was opened.
 pub(super) fn opened() {
     OPEN_DEVICES.fetch_add(1, Ordering::AcqRel);
 }
 
-/// Counts a device that was closed.
 pub(super) fn closed() {
     OPEN_DEVICES.fetch_sub(1, Ordering::AcqRel);
 }
 
-/// Whether the program is ending.
 pub(in crate::force_dimension) fn is_ending() -> bool {
     ENDING.load(Ordering::Acquire)
 }
 
 /// Ensures that brakes are engaged even if the program ends without dropping its devices (a call of `exit`). The
-/// threads that own the devices do this themselves; the exit handler only waits for them. On Windows it is called when `main` has
-/// returned, and not by [`std::process::exit`], which ends all threads first: a program with devices must not call that.
+/// threads that own the devices do this themselves; the exit handler only waits for them. On Windows it is called when
+/// `main` has returned, but not by [`std::process::exit`], which ends all threads first: a program with devices must
+/// not call that function.
 pub(super) fn call_before_exit() {
     extern "C" fn release_all() {
         ENDING.store(true, Ordering::Release);

@@ -1,4 +1,6 @@
 //! The table of the SDK's functions, with the types of its C header, and how it is filled from a loaded library.
+//!
+//! Source: `dhdc.h` and `drdc.h` of SDK 3.17.5.
 
 use std::ffi::{c_char, c_int, c_uchar, c_uint, c_ushort};
 
@@ -22,7 +24,7 @@ macro_rules! library {
             pub(super) fn of(library: &Library) -> Result<Self, &'static str> {
                 Ok(Self {
                     $(
-                        // SAFETY: the type is that of the symbol's declaration in the SDK's header; the library is never
+                        // SAFETY: the type matches the symbol's declaration in the SDK's header; the library is never
                         // unloaded, so the pointer stays valid.
                         $field: unsafe { *library.get($symbol).map_err(|_| $symbol)? },
                     )*
@@ -67,12 +69,12 @@ pub(in crate::force_dimension) const STAND_IN_SYMBOL: &str = "nimaEmulateHandle"
 pub type EmulateHandle = unsafe extern "C" fn(*const c_char) -> c_int;
 
 fn emulate_handle_of(library: &Library) -> Option<EmulateHandle> {
-    // SAFETY: the type is that of the replacement library's own symbol; a library from which it is kept is never
+    // SAFETY: the type matches the replacement library's own symbol; a library whose symbol is stored is never
     // unloaded.
     unsafe { library.get::<EmulateHandle>(STAND_IN_SYMBOL).ok().map(|symbol| *symbol) }
 }
 
-/// Whether this library emulates devices and is not the manufacturer's.
+/// Returns whether this library emulates devices and is not the manufacturer's.
 pub(in crate::force_dimension) fn is_stand_in(library: &Library) -> bool {
     emulate_handle_of(library).is_some()
 }

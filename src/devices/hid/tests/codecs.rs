@@ -174,7 +174,8 @@ proptest! {
     }
 }
 
-/// Random and mutated reports into every codec: readings stay within -1 to 1, switches within their number, and nothing panics.
+/// Feeds random and mutated reports to every codec: readings stay within -1 to 1, switches within their number, and
+/// nothing panics.
 fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut state = CapState::default();

@@ -14,24 +14,18 @@ use crate::{
     transport::Bytes as _,
 };
 
-/// Why a command was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    #[error("the arm is lost: connect it again")]
+    #[error("the connection to the arm is lost: reconnect it")]
     Lost,
-    /// Joint targets need low-level servoing.
-    #[error("the arm does not take joint targets now: enter low-level servoing first")]
+    #[error("the arm does not accept joint targets now: enter low-level servoing first")]
     NotServoing,
-    /// A twist needs single-level servoing.
-    #[error("the arm takes no twist in low-level servoing: leave it first")]
+    #[error("the arm does not accept a twist in low-level servoing: leave low-level servoing first")]
     NotSingleLevel,
-    /// The arm is moving with a twist.
-    #[error("the arm moves with a twist: stop it first")]
+    #[error("a twist is moving the arm: stop it first")]
     Moving,
-    /// A number is not finite.
-    #[error("the command has a number that is not finite")]
+    #[error("the command contains a non-finite number: send finite numbers")]
     NotFinite,
-    /// A joint limit is exceeded.
     #[error("joint {joint} was commanded {beyond}: the arm brakes and leaves low-level servoing")]
     Beyond {
         /// The joint, counted from 1.
@@ -51,7 +45,6 @@ pub enum TwistFrame {
     Base = 3,
 }
 
-/// A velocity of the tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToolTwist {
     pub frame: TwistFrame,
@@ -87,13 +80,14 @@ pub(super) struct Jog {
     sent_s: Option<f64>,
 }
 
-/// A twist that is not renewed ends after this time, s.
+/// A twist that is not renewed ends after this time, s, because the arm's own limit is 2 s
+/// (`connection_inactivity_timeout`), which is too long for a moving tool.
 const TWIST_DEAD_MAN_S: f64 = 0.1;
-/// Interval between two twists, s: the base accepts about 40 a second.
+/// Interval between two twists, s: the base accepts about 40 per second.
 const TWIST_PERIOD_S: f64 = 0.025;
 
 impl Driver {
-    /// Requests low-level servoing, starting at rest at the present position. It is active when
+    /// Requests low-level servoing, starting at rest at the current position. It is active when
     /// [`ArmReading::servoing`](crate::ArmReading::servoing) becomes true, after some ticks; a refusal of the arm is in
     /// [`Driver::answer`].
     ///
@@ -112,7 +106,6 @@ impl Driver {
         Ok(())
     }
 
-    /// Brakes, then returns to single-level servoing.
     pub fn leave_low_level(&mut self) {
         match self.mode {
             Mode::Single | Mode::Braking | Mode::Leaving { .. } => {}
@@ -126,7 +119,7 @@ impl Driver {
 
     /// Commands joint angles, rad, in the turns of the readings: the next point of a path within the
     /// [limits](crate::kinova::Settings::joint_limits), starting at [`Driver::command_rad`]. A command beyond the
-    /// limits is refused and counted, and ends servoing, because the plan that it comes from is wrong.
+    /// limits is refused and counted, and ends servoing, because its plan is wrong.
     ///
     /// # Errors
     /// [`Refusal`] if the arm is not servoing, a number is not finite, or a limit is exceeded.
@@ -178,15 +171,15 @@ impl Driver {
         Ok(())
     }
 
-    /// For emergencies: a function that another thread can call to end low-level servoing; the arm then holds its
-    /// position.
+    /// For emergencies: returns a function that another thread can call to end low-level servoing; the arm then holds
+    /// its position.
     ///
     /// # Errors
     /// If the operating system cannot duplicate the connection.
     pub fn lever(&self) -> std::io::Result<impl FnMut() + Send + 'static> {
         let single = Number { value: ServoingMode::Single as u32 };
         let (mut tcp, words) = self.lines.last_words(Rpc::SET_SERVOING_MODE, &single)?;
-        // If the connection is broken, the arm's own watchdog has acted already.
+        // If the connection is broken, the arm's own watchdog has already acted.
         Ok(move || {
             tcp.send(&words).ok();
         })
@@ -203,32 +196,31 @@ impl Driver {
         Ok(())
     }
 
-    /// Faults in the latest answer.
     pub fn faults(&self) -> Faults {
         Faults::of(&self.feedback)
     }
 
-    /// The latest good answer, in the units of the wire.
+    /// Returns the latest valid answer, in the units of the protocol.
     pub const fn feedback(&self) -> &Feedback {
         &self.feedback
     }
 
-    /// The last call that was refused since low-level servoing was entered.
+    /// Returns the last call that was refused since low-level servoing was entered.
     pub const fn answer(&self) -> Option<Answer> {
         self.answer
     }
 
-    /// How often another client ended low-level servoing.
+    /// Returns how often another client ended low-level servoing.
     pub const fn ousted(&self) -> u32 {
         self.ousted
     }
 
-    /// The commanded joint positions, rad; valid while servoing.
+    /// Returns the commanded joint positions, rad; valid while servoing.
     pub const fn command_rad(&self) -> &[f64; ARM_JOINTS] {
         self.guard.command_rad()
     }
 
-    /// State of the tool according to the arm.
+    /// Returns the state of the tool according to the arm.
     pub fn tool(&self) -> ToolReading {
         let Feedback { tool_pose, tool_twist, tool_wrench, .. } = &self.feedback;
         let theta_rad = vector(&tool_pose[3..], 1_f64.to_radians());
@@ -246,7 +238,7 @@ impl Driver {
         if self.is_lost() { Err(Refusal::Lost) } else { Ok(()) }
     }
 
-    /// Sends the active twist again when it is due; ends one that was not renewed.
+    /// Resends the active twist when it is due; ends a twist that was not renewed.
     pub(super) fn send_twist(&mut self, now_s: f64) {
         if !self.twist.active {
             return;

@@ -1,5 +1,4 @@
-//! Closing a connection: whatever happened before, the arm is left at rest, in single-level servoing, with our sessions
-//! closed.
+//! Closes a connection: in every case the arm is left at rest, in single-level servoing, with our sessions closed.
 //!
 //! Waits for up to two seconds, so it must not run on the real-time thread.
 
@@ -18,7 +17,7 @@ use crate::{
     transport::Datagrams as _,
 };
 
-/// Longest time to brake and leave low-level servoing; from full speed braking takes 0.3 s.
+/// Maximum time to brake and leave low-level servoing; from full speed braking takes 0.3 s.
 const LEAVE: Duration = Duration::from_millis(800);
 const ANSWER: Duration = Duration::from_millis(200);
 const TICK: Duration = Duration::from_millis(1);
@@ -44,7 +43,6 @@ impl Driver {
     }
 }
 
-/// Closes both sessions if the arm still answers.
 pub(in crate::kinova) fn close_sessions(lines: &mut Lines) {
     let (_, bytes) = lines.cyclic.request(Rpc::CLOSE_SESSION, &());
     lines.udp.send(bytes).ok();

@@ -13,18 +13,19 @@ use crate::{
     transport::{Bytes as _, Datagrams as _},
 };
 
+/// Malformed frames in a row after which the arm is lost: 10 ms at 1 kHz, so that a single one does no harm.
 const DAMAGED_MAX: u32 = 10;
 const IMPOSSIBLE_MAX: u32 = 5;
-/// Most datagrams handled in one poll.
+/// Maximum number of datagrams handled in one poll, so that a sender that floods the port cannot hold up the loop.
 const DATAGRAMS: usize = 64;
-/// Most reads of the stream in one poll.
+/// Maximum number of reads of the stream in one poll, so that a flood of notifications cannot hold up the loop.
 const READS: usize = 4;
-/// Largest plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings.
+/// Maximum plausible speed of a joint, rad/s; with [`JUMP_RAD`] it bounds the change between two readings.
 const JUMP_RAD_S: f64 = 10.0;
 const JUMP_RAD: f64 = 0.2;
 
 impl Driver {
-    /// Handles the answers of the cycle; the newest good one is the reading.
+    /// Handles the answers of the cycle and returns the newest valid one.
     pub(super) fn take_cycle(&mut self, now_s: f64) -> Option<Stamped<ArmReading>> {
         let mut newest = None;
         for _ in 0..DATAGRAMS {
@@ -51,7 +52,6 @@ impl Driver {
         newest
     }
 
-    /// Counts a malformed frame.
     fn damaged(&mut self) -> bool {
         self.health.damaged += 1;
         self.damaged_in_row += 1;
@@ -61,7 +61,7 @@ impl Driver {
         false
     }
 
-    /// Returns true if it is a new and good reading.
+    /// Returns true if it is a new and valid reading.
     fn take_datagram(&mut self, header: &Header, feedback: Option<&Feedback>, now_s: f64) -> bool {
         let cyclic = matches!(header.rpc(), Rpc::REFRESH | Rpc::REFRESH_FEEDBACK);
         match header.kind {
@@ -103,7 +103,7 @@ impl Driver {
         true
     }
 
-    /// Whether the numbers are finite, within the arm's limits, and close enough to the last ones.
+    /// Returns whether the numbers are finite, within the arm's limits, and close enough to the last ones.
     fn is_possible(&self, feedback: &Feedback, joint_rad: &[f64; ARM_JOINTS], now_s: f64) -> bool {
         // Before the first reading there is nothing to compare with.
         let reach_rad = JUMP_RAD_S.mul_add(self.health.age_s(now_s), JUMP_RAD);
@@ -112,7 +112,7 @@ impl Driver {
             && joint_rad.iter().zip(&self.joint_rad).all(|(now, last)| (now - last).abs() <= reach_rad)
     }
 
-    /// Handles an error that came instead of an answer, on either connection.
+    /// Handles an error that arrived instead of an answer, on either connection.
     fn refused(&mut self, header: &Header) {
         let answer = Answer { rpc: header.rpc(), error: header.error, sub_error: header.sub_error };
         let cyclic = matches!(answer.rpc, Rpc::REFRESH | Rpc::REFRESH_FEEDBACK);
@@ -151,7 +151,6 @@ impl Driver {
         }
     }
 
-    /// Handles the answers to calls.
     pub(super) fn take_answers(&mut self, now_s: f64) {
         for _ in 0..READS {
             match self.lines.tcp.receive(self.lines.packets.room()) {

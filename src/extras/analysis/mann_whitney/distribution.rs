@@ -5,7 +5,8 @@ use crate::ranks::Ranks;
 /// `[s]` is the probability that `chosen` of `ranks`, drawn without replacement, have the sum `s` (Streitberg & Röhmel, 1986).
 fn sums(ranks: &[usize], chosen: usize) -> Vec<f64> {
     let most: usize = largest(ranks, chosen);
-    // `ways[j][s]`: number of sets of j ranks with the sum s. At most 1e29 here: no overflow, and rounding stays relative.
+    // `ways[j][s]`: number of sets of j ranks with the sum s. At most 1e29 here: no overflow, and rounding stays
+    // relative.
     let mut ways = vec![vec![0.0; most + 1]; chosen + 1];
     ways[0][0] = 1.0;
     for (seen, &rank) in ranks.iter().enumerate() {
@@ -21,19 +22,20 @@ fn sums(ranks: &[usize], chosen: usize) -> Vec<f64> {
     masses.iter().map(|mass| mass / total).collect()
 }
 
-/// Sum of the `chosen` largest.
+/// Sum of the `chosen` largest ranks.
 fn largest(ranks: &[usize], chosen: usize) -> usize {
     let mut sorted = ranks.to_vec();
     sorted.sort_unstable();
     sorted.iter().rev().take(chosen).sum()
 }
 
-/// Two-sided p-value of the sum of the first `first` ranks: probability of a sum at least as far from the mean.
+/// Returns the two-sided p-value of the sum of the first `first` ranks: probability of a sum at least as far from the
+/// mean.
 pub(super) fn two_sided(ranks: &Ranks, first: usize) -> f64 {
     let all = ranks.doubled.len();
     // Both groups are equally far from their means; the smaller one takes less work.
     let chosen = if first <= all - first { 0..first } else { first..all };
-    // Of doubled ranks, the mean of one is all + 1.
+    // The mean of a doubled rank is all + 1.
     let mean = chosen.len() * (all + 1);
     let far = ranks.doubled[chosen.clone()].iter().sum::<usize>().abs_diff(mean);
     let masses = sums(&ranks.doubled, chosen.len());

@@ -1,6 +1,6 @@
 //! The test of Mann, Whitney and Wilcoxon: two groups of different participants.
 //!
-//! Two-sided throughout. The exact p-value is that of the permutation distribution, also with ties.
+//! Always two-sided. The exact p-value comes from the permutation distribution, also with ties.
 
 mod distribution;
 
@@ -19,23 +19,25 @@ const MOST_DIFFERENCES: usize = 4_000_000;
 /// Result of the Mann-Whitney test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MannWhitney {
-    /// Number of pairs of a value of the first group and one of the second in which the first is greater, ties counting half; R's W.
+    /// Number of pairs of a value of the first group and one of the second in which the first is greater, ties counting
+    /// half; R's W.
     pub u: f64,
     /// The same in which the second is greater.
     pub other_u: f64,
-    /// Standardised statistic, corrected for ties and continuity, positive where the first group has the greater values.
+    /// Standardised statistic, corrected for ties and continuity, positive if the first group has the greater values.
     pub z: f64,
     /// Two-sided p-value.
     pub p: f64,
-    /// Whether it is exact.
+    /// Whether `p` is exact.
     pub exact: bool,
 }
 
-/// Of two groups with a value each at least, not all of which are the same (Mann & Whitney, On a test of whether one of two random variables is
-/// stochastically larger than the other, Annals of Mathematical Statistics 18, 1947).
+/// Tests two groups with at least one value each, not all of which are equal (Mann & Whitney, On a test of whether one
+/// of two random variables is stochastically larger than the other, Annals of Mathematical Statistics 18, 1947).
 ///
-/// Exact where both groups have at most [`MOST_EXACT`] values, if nothing else is asked for. With ties the distribution is not symmetric, and
-/// the p-value counts what is at least as far from the mean, on either side (as R's `coin` and `SciPy`'s permutation do for a centred statistic).
+/// By default exact if both groups have at most [`MOST_EXACT`] values. With ties the distribution is not symmetric, and
+/// the p-value counts everything at least as far from the mean, on either side (like R's `coin` and `SciPy`'s
+/// permutation for a centred statistic).
 pub fn test(first: &[f64], second: &[f64], distribution: Distribution) -> Result<MannWhitney> {
     check::values("values of the first group", first, 1)?;
     check::values("values of the second group", second, 1)?;
@@ -56,10 +58,12 @@ pub fn test(first: &[f64], second: &[f64], distribution: Distribution) -> Result
     Ok(MannWhitney { u, other_u: m * n - u, z, p, exact })
 }
 
-/// How much greater the first group is: the median of all differences between its values and those of the second (Hodges & Lehmann, 1963).
+/// Estimates by how much the first group is greater: the median of all differences between its values and the second
+/// group's (Hodges & Lehmann, 1963).
 ///
-/// The interval inverts the test (Moses; Hollander & Wolfe, section 4.3): exact where both groups have at most [`MOST_EXACT`] values. With ties its
-/// confidence is at least what it tells, where R's `wilcox.test` turns to the normal approximation.
+/// The interval inverts the test (Moses; Hollander & Wolfe, section 4.3): exact if both groups have at most
+/// [`MOST_EXACT`] values. With ties its confidence is at least the reported one, whereas R's `wilcox.test` switches to
+/// the normal approximation.
 pub fn shift(first: &[f64], second: &[f64], confidence: f64) -> Result<Location> {
     check::values("values of the first group", first, 1)?;
     check::values("values of the second group", second, 1)?;

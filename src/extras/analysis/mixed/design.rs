@@ -1,4 +1,4 @@
-//! Columns of the fixed effects, and the participants that rows belong to.
+//! Columns of the fixed effects, and the participant of each row.
 
 use super::Model;
 use crate::error::{AnalysisError, Result};
@@ -7,19 +7,20 @@ use nalgebra::{DMatrix, DVector};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// A column with less than this share of its length outside of those before it follows from them (the limit of R's `lm`).
+/// A column whose residual against the earlier columns is below this fraction of its length depends on them (the limit
+/// of R's `lm`).
 const DEPENDENT: f64 = 1e-7;
 
-/// The model as matrices. Its columns are made orthonormal (`X = Q R`), so that no covariate's size or mean costs digits; `y` is what `Q` leaves of the
-/// response.
+/// The model as matrices. Its columns are made orthonormal (`X = Q R`), so that the size or mean of a covariate costs
+/// no digits; `y` is the residual of the response against `Q`.
 pub(super) struct Design {
-    /// Name of each column of X: the intercept, the conditions in alphabetical order without the reference, the covariates.
+    /// Name of each column of X: the intercept, the conditions in alphabetical order without the reference, the
+    /// covariates.
     pub(super) names: Vec<String>,
     pub(super) reference: String,
-    /// Which of them are conditions.
+    /// The columns that are conditions.
     pub(super) conditions: Range<usize>,
     pub(super) participants: Vec<String>,
-    /// The participant of each row.
     pub(super) of_row: Vec<usize>,
     /// Number of rows of each participant.
     pub(super) sizes: Vec<f64>,
@@ -51,7 +52,7 @@ impl Design {
         let response = DVector::from_column_slice(&model.response);
         let projected = q.tr_mul(&response);
         let y = &response - &q * &projected;
-        // Relative to how much the responses vary, and to the rounding that their size brings.
+        // Relative to the variation of the responses, and to the rounding error of their size.
         if y.norm() <= 1e-12 * summary::squares(&model.response).sqrt() + 1e-14 * response.norm() {
             return Err(AnalysisError::NotEstimable { why: "the fixed effects explain the responses without rest" });
         }
@@ -103,15 +104,15 @@ fn orthonormal(x: &DMatrix<f64>, names: &[String]) -> Result<(DMatrix<f64>, DMat
     }
 }
 
-/// What is left to estimate the variances from.
+/// Degrees of freedom for estimating the variances.
 struct Degrees {
     within: usize,
     between: usize,
 }
 
 impl Degrees {
-    /// `within`: trials less what participants and effects within them explain. `between`: participants less the effects that only differ
-    /// between them, the intercept among them.
+    /// `within`: trials minus the participants and the effects within them. `between`: participants minus the effects
+    /// that only differ between them, including the intercept.
     fn of(x: &DMatrix<f64>, r: &DMatrix<f64>, of_row: &[usize], sizes: &[f64]) -> Self {
         let mut means: DMatrix<f64> = DMatrix::zeros(sizes.len(), x.ncols());
         for (row, &participant) in of_row.iter().enumerate() {
@@ -121,7 +122,8 @@ impl Degrees {
         }
         let centred =
             DMatrix::from_fn(x.nrows(), x.ncols(), |row, column| x[(row, column)] - means[(of_row[row], column)]);
-        // In the scale of what each column adds to those before it, so that a small effect within a large column counts.
+        // Scaled by the part of each column that is independent of earlier ones, so that a small effect within a large
+        // column counts.
         let centred =
             DMatrix::from_fn(x.nrows(), x.ncols(), |row, column| centred[(row, column)] / r[(column, column)].abs());
         let explained = rank(centred);
@@ -146,13 +148,14 @@ impl Degrees {
     }
 }
 
-/// Number of columns that do not follow from those before them.
+/// Number of columns that do not depend on earlier ones.
 fn rank(mut columns: DMatrix<f64>) -> usize {
     let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     let mut rank = 0;
     for at in 0..columns.ncols() {
         let length = columns.column(at).norm();
-        // Columns are scaled to about one: less is the rounding of a column that does not vary within participants.
+        // Columns are scaled to about one; a smaller length is the rounding error of a column that does not vary within
+        // participants.
         if length <= DEPENDENT * lengths[at].max(1.0) {
             continue;
         }

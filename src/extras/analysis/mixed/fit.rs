@@ -1,4 +1,4 @@
-//! What a fitted model says.
+//! The results of a fitted model.
 
 use super::Criterion;
 use super::design::Design;
@@ -13,24 +13,24 @@ use serde::Serialize;
 /// A fitted mixed model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fit {
-    /// What was maximised.
+    /// The maximised criterion.
     pub criterion: Criterion,
     /// Intercept (the reference, where covariates are zero), conditions in alphabetical order, covariates.
     pub effects: Vec<Effect>,
-    /// Whether the conditions differ at all; nothing where there is only one.
+    /// Whether the conditions differ at all; `None` if there is only one.
     pub conditions: Option<JointTest>,
-    /// Variance of the participants' intercepts, unit of the response squared. Zero at the edge of what is possible: the trials of one participant
-    /// are then no more alike than those of different ones, and the model is one without participants.
+    /// Variance of the participants' intercepts, unit of the response squared. Zero is the boundary: then the trials of
+    /// one participant are no more alike than those of different ones, and the model equals one without participants.
     pub participant_variance: f64,
     /// Variance within participants, unit of the response squared.
     pub residual_variance: f64,
-    /// Intraclass correlation: share of the participants in the sum of both variances.
+    /// Intraclass correlation: the participants' fraction of the sum of both variances.
     pub icc: f64,
-    /// Logarithm of the (restricted) likelihood. Of REML it compares only models with the same fixed effects.
+    /// Logarithm of the (restricted) likelihood. With REML it only compares models with the same fixed effects.
     pub log_likelihood: f64,
     /// Best linear unbiased prediction of each participant's intercept, by name in alphabetical order.
     pub intercepts: Vec<(String, f64)>,
-    /// What is left of each response, in the order of the trials: without fixed effects and the participant's intercept.
+    /// Residual of each response, in the order of the trials: without fixed effects and the participant's intercept.
     pub residuals: Vec<f64>,
     #[serde(skip)]
     solution: Solution,
@@ -41,30 +41,27 @@ pub struct Fit {
 pub struct Effect {
     /// The condition, the covariate, or `(intercept)`.
     pub name: String,
-    /// In the unit of the response, of a covariate per its unit.
+    /// In the unit of the response; for a covariate, per its unit.
     pub estimate: f64,
-    /// Of the estimate.
     pub standard_error: f64,
     /// Estimate over standard error.
     pub t: f64,
     /// Satterthwaite's degrees of freedom.
     pub df: f64,
-    /// Two-sided p-value.
     pub p: f64,
-    /// Interval of confidence of the estimate.
+    /// Confidence interval of the estimate.
     pub interval: Interval,
 }
 
 /// F test of several effects at once (Fai & Cornelius, Approximate F-tests, Journal of Statistical Computation and Simulation 54, 1996, as in lmerTest).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct JointTest {
-    /// F.
     pub f: f64,
     /// Degrees of freedom of the numerator: number of effects.
     pub df: f64,
     /// Degrees of freedom of the denominator, after Satterthwaite.
     pub denominator_df: f64,
-    /// Its p-value.
+    /// p-value of `f`.
     pub p: f64,
 }
 
@@ -79,7 +76,7 @@ struct Solution {
 
 impl Fit {
     pub(super) fn at(design: &Design, ratio: f64, criterion: Criterion, confidence: f64) -> Result<Self> {
-        let flat = AnalysisError::NotEstimable { why: "the effects cannot be told apart at the best variances" };
+        let flat = AnalysisError::NotEstimable { why: "the effects cannot be separated at the best variances" };
         let profile = Profile::of(design, criterion);
         let point = profile.at(ratio).ok_or(flat.clone())?;
         let precision = Precision::of(design, &profile, &point)?;
@@ -111,8 +108,8 @@ impl Fit {
         self.effects.iter().find(|effect| effect.name == name)
     }
 
-    /// Difference between two conditions, `first` minus `second`; the reference may be one of them. Correct the p-values of several with
-    /// [`crate::correction::holm`].
+    /// Returns the difference between two conditions, `first` minus `second`; the reference may be one of them. Correct
+    /// several p-values with [`crate::correction::holm`].
     pub fn between(&self, first: &str, second: &str) -> Result<Effect> {
         let weights = self.solution.of_condition(first)? - self.solution.of_condition(second)?;
         if first == second {
@@ -127,7 +124,7 @@ impl Solution {
         DVector::from_fn(self.beta.len(), |row, _| f64::from(u8::from(row == at)))
     }
 
-    /// Weights of the fixed effects that give the condition's difference from the reference.
+    /// Returns the weights of the fixed effects for the condition's difference from the reference.
     fn of_condition(&self, name: &str) -> Result<DVector<f64>> {
         if name == self.reference {
             return Ok(DVector::zeros(self.beta.len()));
@@ -145,7 +142,7 @@ impl Solution {
         Effect { name, estimate, standard_error, t, df, p: t_two_sided(t, df), interval }
     }
 
-    /// The effects are turned until they are uncorrelated; each then has its t and its degrees of freedom.
+    /// The effects are rotated until they are uncorrelated; each then has its t and its degrees of freedom.
     fn joint(&self, effects: std::ops::Range<usize>) -> Result<Option<JointTest>> {
         if effects.is_empty() {
             return Ok(None);
@@ -170,7 +167,7 @@ impl Solution {
     }
 }
 
-/// Degrees of freedom of the mean of squared t's: those of the F with the same expectation, 2 where that has none.
+/// Degrees of freedom of the mean of squared t's: those of the F with the same expectation, 2 if that has none.
 fn together(dfs: &[f64]) -> f64 {
     let alike = dfs.windows(2).all(|two| (two[0] - two[1]).abs() < 1e-8 * two[0].abs());
     if alike {

@@ -4,8 +4,9 @@ use super::Criterion;
 use super::design::Design;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Sums that every ratio needs. The covariance of the n trials of one participant is `s (1 + ratio 11')`, whose inverse is
-/// `(1 - 11'/n) / s` within the participant and `11' / (n (1 + n ratio)) / s` for the mean: two parts that are summed apart lose no digits.
+/// Sums that every ratio needs. The covariance of the n trials of one participant is `s (1 + ratio 11')`, whose inverse
+/// is `(1 - 11'/n) / s` within the participant and `11' / (n (1 + n ratio)) / s` for the mean: summing the two parts
+/// separately loses no digits.
 pub(super) struct Profile<'a> {
     design: &'a Design,
     criterion: Criterion,
@@ -19,10 +20,9 @@ pub(super) struct Profile<'a> {
     y_sums: DVector<f64>,
 }
 
-/// The model at one ratio; everything of the fixed effects is in the columns of `Q`.
+/// The model at one ratio; all fixed effects are in the columns of `Q`.
 pub(super) struct Point {
     pub(super) ratio: f64,
-    /// Fixed effects.
     pub(super) gamma: DVector<f64>,
     /// `Q' V^-1 Q` in units of the residual variance.
     pub(super) information: Cholesky<f64, Dyn>,
@@ -52,7 +52,7 @@ impl<'a> Profile<'a> {
         Self { design, criterion, q_within, y_within, within, within_y, q_sums, y_sums }
     }
 
-    /// Nothing where the information has no inverse.
+    /// Returns `None` if the information matrix has no inverse.
     pub(super) fn at(&self, ratio: f64) -> Option<Point> {
         let inflation =
             DVector::from_iterator(self.design.sizes.len(), self.design.sizes.iter().map(|n| 1.0 + n * ratio));
@@ -75,7 +75,7 @@ impl<'a> Profile<'a> {
         Some(Point { ratio, gamma, information, squares, inflation, u, z })
     }
 
-    /// Number by which the residual sum of squares is divided: trials, for REML less the fixed effects.
+    /// Returns the divisor of the residual sum of squares: trials, for REML minus the fixed effects.
     pub(super) fn degrees(&self) -> f64 {
         let taken = if self.criterion == Criterion::Reml { self.design.q.ncols() } else { 0 };
         (self.design.rows() - taken) as f64
@@ -85,7 +85,7 @@ impl<'a> Profile<'a> {
         point.squares / self.degrees()
     }
 
-    /// Minus twice the logarithm of the likelihood at its best residual variance and fixed effects.
+    /// Returns minus twice the logarithm of the likelihood at its best residual variance and fixed effects.
     pub(super) fn deviance(&self, point: &Point) -> f64 {
         let variance = self.residual_variance(point);
         let residual = self.degrees() * (1.0 + (std::f64::consts::TAU * variance).ln());

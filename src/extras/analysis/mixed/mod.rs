@@ -1,13 +1,14 @@
 //! A linear mixed model with a random intercept per participant.
 //!
-//! `y = X beta + b(participant) + e`, with `b ~ N(0, participant variance)` and `e ~ N(0, residual variance)`, all independent. The fixed effects are
-//! an intercept, the conditions against a reference (treatment coding), and covariates as they are given. Unequal numbers of trials and
-//! missing ones are no obstacle.
+//! `y = X beta + b(participant) + e`, with `b ~ N(0, participant variance)` and `e ~ N(0, residual variance)`, all
+//! independent. The fixed effects are an intercept, the conditions relative to a reference (treatment coding), and the
+//! covariates unmodified. Unequal numbers of trials and missing trials are allowed.
 //!
-//! The ratio of the two variances is found on one axis, everything else follows from it in closed form (Bates, Mächler, Bolker & Walker, Fitting
-//! linear mixed-effects models using lme4, Journal of Statistical Software 67, 2015, section 3; here with sums over participants). Degrees of
-//! freedom are those of Satterthwaite, as in lmerTest (Kuznetsova, Brockhoff & Christensen, Journal of Statistical Software 82, 2017; Giesbrecht &
-//! Burns, Biometrics 41, 1985), with derivatives in closed form where lmerTest takes differences.
+//! The ratio of the two variances is found by a one-dimensional search; the rest follows from it in closed form (Bates,
+//! Mächler, Bolker & Walker, Fitting linear mixed-effects models using lme4, Journal of Statistical Software 67, 2015,
+//! section 3; here with sums over participants). Degrees of freedom are Satterthwaite's, as in lmerTest (Kuznetsova,
+//! Brockhoff & Christensen, Journal of Statistical Software 82, 2017; Giesbrecht & Burns, Biometrics 41, 1985), with
+//! derivatives in closed form where lmerTest uses differences.
 
 mod design;
 mod fit;
@@ -22,18 +23,17 @@ use serde::Serialize;
 
 pub use fit::{Effect, Fit, JointTest};
 
-/// What is maximised.
+/// The criterion to be maximised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Criterion {
-    /// Restricted likelihood: variances without the bias that the fixed effects bring. For everything but comparing models with different
-    /// fixed effects.
+    /// Restricted likelihood: variances without the bias caused by the fixed effects. For everything except comparing
+    /// models with different fixed effects.
     #[default]
     Reml,
-    /// Likelihood.
     Ml,
 }
 
-/// Measurements, one entry per trial, with what explains them.
+/// Measurements, one entry per trial, with their explanatory variables.
 ///
 /// ```
 /// use nima_analysis::{mixed::{Criterion, Model}, AnalysisError};
@@ -57,8 +57,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// `participant`, `condition` and `response` of each trial, all of one length; the conditions are compared with `reference`, which occurs among them.
-    /// With one condition alone there is only the intercept.
+    /// `participant`, `condition` and `response` of each trial, all of one length; the conditions are compared with
+    /// `reference`, which must occur among them. With a single condition there is only the intercept.
     pub fn new<P: AsRef<str>, C: AsRef<str>>(
         participant: &[P],
         condition: &[C],
@@ -80,7 +80,8 @@ impl Model {
         })
     }
 
-    /// Adds a covariate, such as the number of the trial or the place of the condition in the order: one value per trial, taken as it is (not centred).
+    /// Adds a covariate, such as the number of the trial or the position of the condition in the order: one value per
+    /// trial, used unmodified (not centred).
     pub fn covariate(mut self, name: &str, values: &[f64]) -> Result<Self> {
         check::as_many(&format!("the values of '{name}'"), values.len(), "the responses", self.response.len())?;
         check::finite(&format!("the covariate '{name}'"), values)?;
@@ -88,10 +89,10 @@ impl Model {
         Ok(self)
     }
 
-    /// Fits it; `confidence` is that of the intervals.
+    /// Fits the model; `confidence` is the level of the intervals.
     ///
-    /// Refuses a column that follows from others, fewer trials or participants than the effects and variances need, and responses that the
-    /// effects explain without rest.
+    /// Refuses a column that depends on others, fewer trials or participants than the effects and variances need, and
+    /// responses that the effects explain without residual.
     pub fn fit(&self, criterion: Criterion, confidence: f64) -> Result<Fit> {
         check::share("the confidence", confidence)?;
         let design = Design::of(self)?;

@@ -1,11 +1,11 @@
-//! The ratio of the participants' variance to the residual one, where the likelihood is greatest.
+//! The ratio of the participants' variance to the residual variance that maximises the likelihood.
 
 use super::Criterion;
 use super::design::Design;
 use super::likelihood::{Point, Profile};
 use crate::error::{AnalysisError, Result};
 
-/// Correlations within a participant at which the likelihood is looked at first: evenly, then ever nearer to 1.
+/// Correlations within a participant for the first scan of the likelihood: evenly spaced, then ever closer to 1.
 fn correlations() -> impl Iterator<Item = f64> {
     (0..50).map(|step| f64::from(step) / 50.0).chain((2..=9).map(|digits| 1.0 - 0.1_f64.powi(digits)))
 }

@@ -5,13 +5,13 @@ use super::likelihood::{Point, Profile};
 use crate::error::{AnalysisError, Result};
 use nalgebra::{DMatrix, DVector};
 
-/// How sure the model is of its fixed effects, and how sure it is of that.
+/// Uncertainty of the fixed effects, and uncertainty of that estimate.
 #[derive(Clone, Debug)]
 pub(super) struct Precision {
     /// Covariance of the fixed effects.
     pub(super) covariance: DMatrix<f64>,
     residual_variance: f64,
-    /// `(X' V^-1 X)^-1 X' V^-1 Z`, effects by participants; what the ratio does to the covariance follows from it.
+    /// `(X' V^-1 X)^-1 X' V^-1 Z`, effects by participants; determines the effect of the ratio on the covariance.
     by_ratio: DMatrix<f64>,
     /// Covariance of ratio and residual variance: ratio twice, both, variance twice.
     variances: [f64; 3],
@@ -27,13 +27,14 @@ impl Precision {
         let [ratio, both, variance] = profile.curvature(point);
         let determinant = ratio * variance - both * both;
         let variances = if point.ratio > 0.0 {
-            // Written so that NaN is refused too. The curvatures are those of minus twice the likelihood.
+            // Written so that NaN is refused too. The curvatures belong to minus twice the likelihood.
             if !(ratio > 0.0 && determinant > 0.0) {
                 return Err(lost);
             }
             [2.0 * variance / determinant, -2.0 * both / determinant, 2.0 * ratio / determinant]
         } else {
-            // At the edge the ratio is taken as known, as lmerTest does, in whose parameter (its root) nothing changes there.
+            // At the boundary the ratio is treated as known, like in lmerTest, whose parameter (its root) does not
+            // change there.
             [0.0, 0.0, 2.0 / variance]
         };
         Ok(Self { covariance, residual_variance, by_ratio, variances })
@@ -44,7 +45,7 @@ impl Precision {
         weights.dot(&(&self.covariance * weights))
     }
 
-    /// Its degrees of freedom: 2 variance^2 / (variance of the variance, by its gradient).
+    /// Degrees of freedom of that combination: 2 variance^2 / (variance of the variance, by its gradient).
     pub(super) fn df(&self, weights: &DVector<f64>) -> f64 {
         let variance = self.variance(weights);
         let by_ratio = self.residual_variance * self.by_ratio.tr_mul(weights).norm_squared();

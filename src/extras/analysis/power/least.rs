@@ -1,25 +1,24 @@
-//! The least number of participants that gives the wanted power.
+//! The minimum number of participants for the requested power.
 
 use super::Power;
 use crate::check;
 use crate::error::{AnalysisError, Result};
 use serde::Serialize;
 
-/// The least number of participants, with the power that it gives.
+/// The minimum number of participants, with the resulting power.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Least {
-    /// Number of participants.
     pub participants: usize,
-    /// What they give.
     pub power: Power,
 }
 
 impl Least {
-    /// The least number from `from` to `largest` at which `power_of` gives the share `wanted` (between 0 and 1): first doubled until it is reached, then
-    /// halved.
+    /// Returns the minimum number from `from` to `largest` at which the fraction from `power_of` reaches `wanted`
+    /// (between 0 and 1): doubles until it is reached, then bisects.
     ///
-    /// The power of an exact test rises in small steps and may fall from one number to the next, and simulations scatter: one participant less
-    /// has less than what was wanted, but a still smaller number may by chance have it. [`AnalysisError::NotReached`] if `largest` has less.
+    /// The power of an exact test rises in small steps and may fall from one number to the next, and simulations
+    /// scatter: one participant fewer does not reach the requested power, but a still smaller number may do so by
+    /// chance. [`AnalysisError::NotReached`] if `largest` does not reach it.
     ///
     /// ```
     /// use nima_analysis::{power::{Least, PairedTest, Population, Simulation}, AnalysisError};
@@ -36,7 +35,7 @@ impl Least {
         mut power_of: impl FnMut(usize) -> Result<Power>,
     ) -> Result<Self> {
         check::share("the wanted power", wanted)?;
-        check::enough("the most participants", largest, from)?;
+        check::enough("the maximum number of participants", largest, from)?;
         let mut below = None;
         let mut at = from;
         let mut power = power_of(at)?;

@@ -1,4 +1,4 @@
-//! How many participants a study needs: studies are simulated and analysed as the real one will be.
+//! The number of participants that a study needs: studies are simulated and analysed like the real one.
 //!
 //! ```
 //! use nima_analysis::{power::{PairedTest, Population, Simulation}, AnalysisError};
@@ -25,7 +25,7 @@ pub use least::Least;
 pub use paired::{PairedTest, Population};
 pub use study::MixedStudy;
 
-/// How studies are simulated.
+/// Settings of the simulated studies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {
     /// Number of studies, 1 to a million.
@@ -42,21 +42,22 @@ impl Default for Simulation {
     }
 }
 
-/// Share of the simulated studies that were significant.
+/// Fraction of the simulated studies that were significant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Power {
     /// 0 to 1.
     pub share: f64,
-    /// Wilson's interval of 95 % confidence of the share (Probable inference, JASA 22, 1927): how sure the simulation is, not how sure the pilot is.
+    /// Wilson's interval of the fraction at 95 % confidence (Probable inference, JASA 22, 1927): the uncertainty of the
+    /// simulation, not of the pilot.
     pub interval: Interval,
-    /// Number of studies.
     pub runs: usize,
-    /// How many of them could not be analysed (all differences zero, or variances without a maximum); they count as not significant.
+    /// Number of studies that could not be analysed (all differences zero, or variances without a maximum); they count
+    /// as not significant.
     pub refused: usize,
 }
 
 impl Simulation {
-    /// Runs `study`, which gives the p-value of one simulated study, or nothing where it cannot be analysed.
+    /// Runs `study`, which returns the p-value of one simulated study, or `None` if it cannot be analysed.
     fn run(&self, mut study: impl FnMut(&mut fastrand::Rng) -> Option<f64>) -> Result<Power> {
         check::enough("simulated studies", self.runs, 1)?;
         check::not_too_many("simulated studies", self.runs, 1_000_000)?;
@@ -66,7 +67,7 @@ impl Simulation {
         let mut refused = 0;
         for _ in 0..self.runs {
             match study(&mut rng) {
-                // Rounding must not turn a p-value that is just at the level away.
+                // Rounding must not exclude a p-value exactly at the level.
                 Some(p) if p <= self.level + 1e-12 => significant += 1,
                 Some(_) => {}
                 None => refused += 1,

@@ -5,12 +5,12 @@ use crate::error::Result;
 use crate::signed_rank::{self, Options};
 use crate::{check, t_test};
 
-/// What the differences of future participants are drawn from, apart from the effect.
+/// The distribution of future participants' differences, without the effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Population {
-    /// From these deviations, with replacement. [`Population::from_pilot`] makes them.
+    /// These deviations, drawn with replacement. [`Population::from_pilot`] computes them.
     Deviations(Vec<f64>),
-    /// From a normal distribution with this standard deviation.
+    /// A normal distribution with this standard deviation.
     Normal {
         /// In the unit of the differences.
         sd: f64,
@@ -28,9 +28,10 @@ pub enum PairedTest {
 }
 
 impl Population {
-    /// From the differences of a pilot study, two at least: without their Hodges-Lehmann estimate, which the effect takes the place of, and wider by
-    /// sqrt(n / (n - 1)), because what is drawn from n values varies less than what they were drawn from. A small pilot knows little of
-    /// the tails, and its standard deviation may be far off; look at a range of them.
+    /// Computes the deviations from at least two differences of a pilot study: without their Hodges-Lehmann estimate,
+    /// which the effect replaces, and wider by sqrt(n / (n - 1)), because resamples of n values vary less than the
+    /// population. A small pilot says little about the tails, and its standard deviation may be far off; test a range
+    /// of them.
     pub fn from_pilot(differences: &[f64]) -> Result<Self> {
         check::values("differences of the pilot", differences, 2)?;
         let centre = signed_rank::location(differences, 0.95)?.estimate;
@@ -55,7 +56,8 @@ impl Population {
 }
 
 impl Simulation {
-    /// Power of a study with `n` participants (2 to 10 000) if the differences are those of `population` about `effect`.
+    /// Returns the power of a study with `n` participants (2 to 10 000) if the differences have the distribution
+    /// `population` about `effect`.
     pub fn paired(&self, population: &Population, effect: f64, n: usize, test: PairedTest) -> Result<Power> {
         population.check()?;
         check::finite("the effect", &[effect])?;

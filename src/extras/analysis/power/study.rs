@@ -8,9 +8,9 @@ use crate::mixed::{Criterion, Fit, Model};
 /// A study with repeated measures: every participant has the same number of trials under every condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MixedStudy {
-    /// Effect of each condition but the reference, in the unit of the response; one at least.
+    /// Effect of each condition but the reference, in the unit of the response; at least one.
     pub effects: Vec<f64>,
-    /// Trials of each participant under each condition, one at least.
+    /// Trials of each participant under each condition, at least one.
     pub trials: usize,
     /// Variance of the participants' intercepts; may be zero.
     pub participant_variance: f64,
@@ -19,7 +19,8 @@ pub struct MixedStudy {
 }
 
 impl MixedStudy {
-    /// With the variances of a pilot and the given effects, which are best the least ones that matter and not those that the pilot happened to show.
+    /// Uses the variances of a pilot and the given effects, preferably the smallest relevant ones rather than those
+    /// observed in the pilot.
     pub fn from_pilot(pilot: &Fit, effects: &[f64], trials: usize) -> Self {
         let participant_variance = pilot.participant_variance;
         let residual_variance = pilot.residual_variance;
@@ -40,7 +41,8 @@ impl MixedStudy {
 }
 
 impl Simulation {
-    /// Power of the joint F test of the conditions with `participants`, 2 at least and at most 100 000 trials in all.
+    /// Returns the power of the joint F test of the conditions with `participants`, at least 2 and at most 100 000
+    /// trials in total.
     pub fn mixed(&self, study: &MixedStudy, participants: usize) -> Result<Power> {
         study.check()?;
         check::enough("participants", participants, 2)?;

@@ -1,9 +1,10 @@
 //! The exact distribution of the signed-rank statistic.
 
-/// Probability of each sum of positive ranks when every rank is positive or negative with equal chance; `[s]` is that of sum `s`.
+/// Returns the probability of each sum of positive ranks if every rank is positive or negative with equal chance; `[s]`
+/// is the probability of sum `s`.
 ///
-/// Rank by rank, each sum is reached without the new rank or with it (Streitberg & Röhmel, Exact distributions for permutation and rank tests,
-/// Statistical Software Newsletter 12, 1986). With doubled midranks it holds for ties too.
+/// Rank by rank, each sum is reached without the new rank or with it (Streitberg & Röhmel, Exact distributions for
+/// permutation and rank tests, Statistical Software Newsletter 12, 1986). With doubled midranks it also holds for ties.
 pub(super) fn masses(ranks: impl IntoIterator<Item = usize>) -> Vec<f64> {
     let mut masses = vec![1.0];
     for rank in ranks {
@@ -18,7 +19,8 @@ pub(super) fn masses(ranks: impl IntoIterator<Item = usize>) -> Vec<f64> {
     masses
 }
 
-/// Two-sided p-value of `lesser`, the lesser of the two sums of ranks. The distribution is symmetric: both tails are alike.
+/// Two-sided p-value of `lesser`, the smaller of the two sums of ranks. The distribution is symmetric, so both tails
+/// are equal.
 pub(super) fn two_sided(ranks: &[usize], lesser: usize) -> f64 {
     let tail: f64 = masses(ranks.iter().copied())[..=lesser].iter().sum();
     (2.0 * tail).min(1.0)
@@ -30,7 +32,7 @@ mod tests {
 
     #[test]
     fn every_way_to_sign_the_ranks_is_counted_once() {
-        // Ranks 1, 2.5, 2.5, 4, doubled: all 16 ways by hand.
+        // Ranks 1, 2.5, 2.5, 4, doubled: all 16 combinations by hand.
         let ranks = [2, 5, 5, 8];
         let mut expected = [0.0; 21];
         for signs in 0..16 {

@@ -1,4 +1,4 @@
-//! How large the difference is: the estimate that belongs to the signed-rank test.
+//! The size of the difference: the estimate that belongs to the signed-rank test.
 
 use super::{MOST_EXACT, distribution};
 use crate::error::Result;
@@ -12,23 +12,23 @@ const MOST: usize = 2000;
 /// A Hodges-Lehmann estimate with its interval, in the unit of the values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Location {
-    /// The estimate.
     pub estimate: f64,
-    /// Its interval of confidence.
+    /// Confidence interval of the estimate.
     pub interval: Interval,
 }
 
-/// Of `first - second`, pair by pair.
+/// Estimates `first - second`, pair by pair.
 pub fn paired_location(first: &[f64], second: &[f64], confidence: f64) -> Result<Location> {
     location(&check::differences(first, second)?, confidence)
 }
 
-/// Median of the averages of all pairs of differences, each with itself too (Hodges & Lehmann, Estimates of location based on rank tests, Annals of
-/// Mathematical Statistics 34, 1963), of 1 to 2000 differences.
+/// Median of the averages of all pairs of differences, each also with itself (Hodges & Lehmann, Estimates of location
+/// based on rank tests, Annals of Mathematical Statistics 34, 1963), of 1 to 2000 differences.
 ///
-/// The interval inverts the signed-rank test (Tukey; Hollander & Wolfe, section 3.3): exact up to [`MOST_EXACT`] differences, as R's `wilcox.test` has
-/// it without ties and zeros. With them R turns to the normal approximation, while this one stays: its confidence is then at least what it
-/// tells. Zeros count like all other differences.
+/// The interval inverts the signed-rank test (Tukey; Hollander & Wolfe, section 3.3): exact up to [`MOST_EXACT`]
+/// differences, like R's `wilcox.test` without ties and zeros. With ties or zeros R switches to the normal
+/// approximation, while this one stays exact: its confidence is then at least the reported one. Zeros count like all
+/// other differences.
 pub fn location(differences: &[f64], confidence: f64) -> Result<Location> {
     check::values("differences", differences, 1)?;
     check::not_too_many("differences", differences.len(), MOST)?;

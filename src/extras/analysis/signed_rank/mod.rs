@@ -1,6 +1,7 @@
 //! Wilcoxon's signed-rank test: two conditions, each participant under both.
 //!
-//! Two-sided throughout. The exact p-value is that of the permutation distribution: all 2^n ways of giving the ranks their signs, also with ties.
+//! Always two-sided. The exact p-value comes from the permutation distribution: all 2^n assignments of signs to the
+//! ranks, also with ties.
 
 mod distribution;
 mod location;
@@ -13,16 +14,17 @@ use serde::Serialize;
 
 pub use location::{Location, location, paired_location};
 
-/// Up to this many differences the distribution is exact, where nothing else is asked for (as in `SciPy`'s `wilcoxon`).
+/// By default the distribution is exact up to this many differences (as in `SciPy`'s `wilcoxon`).
 pub const MOST_EXACT: usize = 50;
 
-/// What happens to differences that are zero.
+/// Treatment of differences that are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Zeros {
-    /// They are dropped before the ranks are given (Wilcoxon, Individual comparisons by ranking methods, Biometrics Bulletin 1, 1945); the usual rule.
+    /// Dropped before ranking (Wilcoxon, Individual comparisons by ranking methods, Biometrics Bulletin 1, 1945); the
+    /// usual rule.
     #[default]
     Wilcoxon,
-    /// They get ranks, which are dropped then, so that many zeros weaken the others (Pratt, Remarks on zeros and ties, JASA 54, 1959).
+    /// Ranked, then dropped, so that many zeros weaken the others (Pratt, Remarks on zeros and ties, JASA 54, 1959).
     Pratt,
 }
 
@@ -49,7 +51,6 @@ impl Distribution {
     }
 }
 
-/// Choices of the signed-rank test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     pub zeros: Zeros,
@@ -61,29 +62,31 @@ pub struct Options {
 pub struct SignedRank {
     /// Number of differences that are not zero.
     pub n: usize,
-    /// Number of differences that are.
+    /// Number of differences that are zero.
     pub zeros: usize,
     /// Sum of the ranks of positive differences, R's V.
     pub w_plus: f64,
     /// Sum of the ranks of negative differences.
     pub w_minus: f64,
-    /// Standardised statistic, corrected for ties and continuity (R's and `SciPy`'s), positive where the positive ranks outweigh.
+    /// Standardised statistic, corrected for ties and continuity (R's and `SciPy`'s), positive if the positive ranks
+    /// outweigh.
     pub z: f64,
     /// Two-sided p-value.
     pub p: f64,
-    /// Whether it is exact.
+    /// Whether `p` is exact.
     pub exact: bool,
 }
 
-/// Of `first - second`, pair by pair.
+/// Tests `first - second`, pair by pair.
 pub fn paired(first: &[f64], second: &[f64], options: &Options) -> Result<SignedRank> {
     of_differences(&check::differences(first, second)?, options)
 }
 
-/// Of differences, one at least of which is not zero, against a distribution that is symmetric about zero.
+/// Tests differences, at least one of which is not zero, against a distribution that is symmetric about zero.
 ///
-/// The normal approximation is that of Hollander & Wolfe (Nonparametric Statistical Methods, 1999, section 3.1); of the ranks r that are kept, the sum
-/// has mean sum(r) / 2 and variance sum(r^2) / 4, which holds with ties and under either rule for zeros.
+/// The normal approximation is the one of Hollander & Wolfe (Nonparametric Statistical Methods, 1999, section 3.1); for
+/// the kept ranks r, the sum has mean sum(r) / 2 and variance sum(r^2) / 4, which holds with ties and under either rule
+/// for zeros.
 pub fn of_differences(differences: &[f64], options: &Options) -> Result<SignedRank> {
     check::values("differences", differences, 1)?;
     let (ranks, positive) = signed_ranks(differences, options.zeros);
@@ -103,7 +106,7 @@ pub fn of_differences(differences: &[f64], options: &Options) -> Result<SignedRa
     Ok(SignedRank { n: ranks.len(), zeros: differences.len() - ranks.len(), w_plus, w_minus, z, p, exact })
 }
 
-/// Twice the ranks of the differences that are not zero, and which of those are positive.
+/// Returns twice the ranks of the differences that are not zero, and which of those are positive.
 pub(crate) fn signed_ranks(differences: &[f64], zeros: Zeros) -> (Vec<usize>, Vec<bool>) {
     let ranked = differences.iter().copied().filter(|difference| zeros == Zeros::Pratt || difference.abs() > 0.0);
     let ranked: Vec<f64> = ranked.collect();

@@ -1,4 +1,4 @@
-//! Against other programs, closed forms and simulated studies; and what is refused.
+//! Comparison with other programs, closed forms and simulated studies; and refusals.
 
 mod closed_forms;
 mod peers;

@@ -1,4 +1,5 @@
-//! The numbers of R and `SciPy` (`peers.json`, made by tests/peers/analysis.py, with their versions). `--nocapture` prints the worst differences.
+//! The numbers of R and `SciPy` (`peers.json`, computed by tests/peers/analysis.py, with their versions). `--nocapture`
+//! prints the worst differences.
 
 use crate::mixed::{Criterion, Fit, Model};
 use crate::signed_rank::{self, Distribution, Options, Zeros};
@@ -6,10 +7,10 @@ use crate::{Bootstrap, bootstrap, correction, distribution, effect, friedman, ma
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// All of the numbers here are nearer than this, relative to the greater of the number and 1.
+/// Maximum deviation of all numbers here, relative to the greater of the number and 1.
 const LIMIT: f64 = 1e-6;
 
-/// Differences by what is compared.
+/// Differences, grouped by the compared quantity.
 #[derive(Default)]
 struct Worst(BTreeMap<&'static str, (f64, usize)>);
 
@@ -261,7 +262,7 @@ fn tails_and_quantiles_are_those_of_scipy() {
     let mut worst = Worst::default();
     let rows = |name: &str| peers["distributions"][name].as_array().unwrap().clone();
     let at = |row: &Value, column: usize| row[column].as_f64().unwrap();
-    // Of tails the ratio is compared: a small p-value keeps its digits.
+    // Tails are compared by their ratio: a small p-value keeps its digits.
     let mut tail = |what, found: f64, row: &Value, column: usize| {
         let expected = at(row, column);
         worst.compare(what, if expected.abs() > 0.0 { found / expected } else { found + 1.0 }, &Value::from(1.0));

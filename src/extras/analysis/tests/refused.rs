@@ -1,4 +1,4 @@
-//! Bad input gets one sentence, never a panic or a number that is none.
+//! Bad input gets one sentence, never a panic or NaN.
 
 use super::wilcoxon;
 use crate::mixed::{Criterion, Fit, Model};
@@ -17,7 +17,7 @@ const NONE: [f64; 0] = [];
 fn values_that_are_no_numbers_are_named() {
     let bad = [1.0, 2.5, f64::NAN, 4.0];
     let sentence =
-        |what: &str| format!("value 3 of {what} is not a number that can be used (finite, and smaller than 1e150)");
+        |what: &str| format!("value 3 of {what} is not a usable number (finite, and smaller than 1e150); correct it");
     says(Summary::of(&bad), &sentence("the sample"));
     says(Bootstrap::default().mean(&bad), &sentence("the sample"));
     says(wilcoxon(&bad), &sentence("differences"));
@@ -33,31 +33,34 @@ fn values_that_are_no_numbers_are_named() {
 
 #[test]
 fn too_few_values_are_counted() {
-    says(Summary::of(&NONE), "the sample: at least 1 are needed, and there are 0");
-    says(Bootstrap::default().median(&[1.0]), "the sample: at least 2 are needed, and there are 1");
-    says(wilcoxon(&NONE), "differences: at least 1 are needed, and there are 0");
-    says(friedman::test(&[[1.0, 2.0]]), "participants: at least 2 are needed, and there are 1");
-    says(effect::cohens_d(&[1.0], &[1.0, 2.0]), "values of the first group: at least 2 are needed, and there are 1");
-    says(correction::holm(&NONE), "p-values: at least 1 are needed, and there are 0");
+    says(Summary::of(&NONE), "the sample: 0 are too few; give at least 1");
+    says(Bootstrap::default().median(&[1.0]), "the sample: 1 are too few; give at least 2");
+    says(wilcoxon(&NONE), "differences: 0 are too few; give at least 1");
+    says(friedman::test(&[[1.0, 2.0]]), "participants: 1 are too few; give at least 2");
+    says(effect::cohens_d(&[1.0], &[1.0, 2.0]), "values of the first group: 1 are too few; give at least 2");
+    says(correction::holm(&NONE), "p-values: 0 are too few; give at least 1");
     let many = vec![1.0; 51];
     let exact = Options { distribution: Distribution::Exact, ..Options::default() };
-    says(
-        signed_rank::of_differences(&many, &exact),
-        "differences for an exact test: at most 50 can be handled, and there are 51",
-    );
-    says(signed_rank::location(&[1.0; 2001], 0.9), "differences: at most 2000 can be handled, and there are 2001");
+    says(signed_rank::of_differences(&many, &exact), "differences for an exact test: 51 are too many; give at most 50");
+    says(signed_rank::location(&[1.0; 2001], 0.9), "differences: 2001 are too many; give at most 2000");
 }
 
 #[test]
 fn lengths_that_differ_are_told() {
-    says(t_test::paired(&[1.0, 2.0], &[1.0], 0.95), "the second values must be as many as the first ones: 1 and 2");
+    says(
+        t_test::paired(&[1.0, 2.0], &[1.0], 0.95),
+        "the second values and the first ones differ in number: 1 instead of 2; give the same number of both",
+    );
     let rows = [vec![1.0, 2.0], vec![1.0]];
-    says(friedman::test(&rows), "the values in the row of participant 2 must be as many as the conditions: 1 and 2");
+    says(
+        friedman::test(&rows),
+        "the values in the row of participant 2 and the conditions differ in number: 1 instead of 2; give the same number of both",
+    );
 }
 
 #[test]
 fn what_does_not_vary_cannot_be_judged() {
-    let all = "are all the same, so there is no variation to judge by";
+    let all = "are all the same, so there is no variation to judge by; give values that differ";
     says(wilcoxon(&[0.0, -0.0, 0.0]), &format!("the two values of every participant {all}"));
     says(effect::rank_biserial(&[0.0]), &format!("the two values of every participant {all}"));
     says(mann_whitney::test(&[1.0, 1.0], &[1.0], Distribution::Normal), &format!("the values of both groups {all}"));
@@ -70,8 +73,8 @@ fn what_does_not_vary_cannot_be_judged() {
 
 #[test]
 fn shares_outside_of_their_range_are_told() {
-    says(summary::quantile(&[1.0], 1.5), "the share of a quantile must be from 0 to 1, not 1.5");
-    says(summary::quantile(&[1.0], f64::NAN), "the share of a quantile must be from 0 to 1, not NaN");
+    says(summary::quantile(&[1.0], 1.5), "the level of a quantile must be from 0 to 1, not 1.5");
+    says(summary::quantile(&[1.0], f64::NAN), "the level of a quantile must be from 0 to 1, not NaN");
     says(signed_rank::location(&[1.0], 95.0), "the confidence must be between 0 and 1, not 95");
     says(correction::holm(&[0.2, 1.2]), "a p-value must be from 0 to 1, not 1.2");
     says(
@@ -100,7 +103,7 @@ fn a_power_that_is_not_reached_is_told() {
     let power = |n| simulation.paired(&Population::Normal { sd: 1.0 }, 0.0, n, PairedTest::T);
     let error = Least::of(0.9, 5, 20, power).unwrap_err();
     assert!(matches!(error, AnalysisError::NotReached { largest: 20, .. }), "{error}");
-    says(Least::of(0.9, 5, 4, power), "the most participants: at least 5 are needed, and there are 4");
+    says(Least::of(0.9, 5, 4, power), "the maximum number of participants: 4 are too few; give at least 5");
 }
 
 fn fit(participant: &str, condition: &str, response: &[f64], covariate: Option<&[f64]>) -> Result<Fit, AnalysisError> {
@@ -117,27 +120,30 @@ fn fit(participant: &str, condition: &str, response: &[f64], covariate: Option<&
 fn a_model_that_cannot_be_fitted_says_why() {
     let y = [1.0, 2.5, 2.0, 3.1, 0.4, 2.2];
     says(fit("aabbcc", "zyzyzy", &y, None), "there is no condition called 'x'");
-    says(fit("aabbc", "xyxyx", &y, None), "the participants must be as many as the responses: 5 and 6");
-    says(fit("aaaaaa", "xyxyxy", &y, None), "participants: at least 2 are needed, and there are 1");
+    says(
+        fit("aabbc", "xyxyx", &y, None),
+        "the participants and the responses differ in number: 5 instead of 6; give the same number of both",
+    );
+    says(fit("aaaaaa", "xyxyxy", &y, None), "participants: 1 are too few; give at least 2");
     let nan = [1.0, f64::NAN, 2.0, 3.0, 0.0, 2.0];
     says(
         fit("aabbcc", "xyxyxy", &nan, None),
-        "value 2 of responses is not a number that can be used (finite, and smaller than 1e150)",
+        "value 2 of responses is not a usable number (finite, and smaller than 1e150); correct it",
     );
     says(
         fit("aabbcc", "xyxyxy", &y, Some(&nan)),
-        "value 2 of the covariate 'order' is not a number that can be used (finite, and smaller than 1e150)",
+        "value 2 of the covariate 'order' is not a usable number (finite, and smaller than 1e150); correct it",
     );
-    // The order is the condition once more.
+    // The order repeats the condition.
     says(
         fit("aabbcc", "xyxyxy", &y, Some(&[1.0, 2.0, 1.0, 2.0, 1.0, 2.0])),
-        "the column 'order' follows from the columns before it, so its effect cannot be told from theirs",
+        "the column 'order' is a combination of earlier columns, so its effect cannot be separated from theirs; leave it out",
     );
     says(
         fit("abcdef", "xyxyxy", &y, None),
         "the variances cannot be estimated: there are no more trials than participants and effects within them explain",
     );
-    // The condition differs between the two participants alone.
+    // The condition differs only between the two participants.
     says(
         fit("aaabbb", "xxxyyy", &y, None),
         "the variances cannot be estimated: there are no more participants than effects that differ between them",

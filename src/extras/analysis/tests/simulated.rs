@@ -1,7 +1,7 @@
-//! Simulated studies, whose truth is known.
+//! Simulated studies with known truth.
 //!
-//! Levels and power of Wilcoxon's test depend on the number of participants, because the exact test has few p-values: of 19 differences its level is
-//! 0.0494, near the 0.05 that is asked for.
+//! Level and power of Wilcoxon's test depend on the number of participants, because the exact test has few p-values:
+//! with 19 differences its level is 0.0494, near the requested 0.05.
 
 use super::near;
 use crate::power::{Least, MixedStudy, PairedTest, Population, Simulation};

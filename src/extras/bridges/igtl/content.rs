@@ -1,4 +1,4 @@
-//! What a message says.
+//! The content of a message.
 
 use super::{
     Image, Matrix, Tool, Turned, Unit, Wrong,
@@ -10,26 +10,23 @@ use super::{
 pub enum Kind {
     /// One pose.
     Transform,
-    /// A place, and how it is turned.
+    /// A position and an orientation.
     Position,
     /// A bundle of poses.
     Tracking,
-    /// The same with quaternions.
+    /// A bundle of poses with quaternions.
     Turned,
     /// Values of a sensor.
     Sensor,
-    /// How a device is.
+    /// Status of a device.
     Status,
-    /// A text.
     Text,
-    /// A picture.
     Image,
-    /// What a program can do.
+    /// Message types that a program supports.
     Capability,
 }
 
 impl Kind {
-    /// All of them.
     pub const ALL: [Self; 9] = [
         Self::Transform,
         Self::Position,
@@ -42,7 +39,7 @@ impl Kind {
         Self::Capability,
     ];
 
-    /// As the type of a message.
+    /// Its message type.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Transform => "TRANSFORM",
@@ -57,7 +54,7 @@ impl Kind {
         }
     }
 
-    /// In requests, whose names have 12 bytes too.
+    /// Its name in requests, whose names have at most 12 bytes too.
     const fn short(self) -> &'static str {
         match self {
             Self::Transform => "TRANS",
@@ -67,14 +64,14 @@ impl Kind {
     }
 }
 
-/// What a request asks for.
+/// Kind of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verb {
-    /// Once.
+    /// Send once.
     Get,
-    /// Again and again.
+    /// Send repeatedly.
     Start,
-    /// No more.
+    /// Stop sending.
     Stop,
 }
 
@@ -92,36 +89,35 @@ impl Verb {
 
 const ANSWER: &str = "RTS_";
 
-/// How often a bundle is wanted, and in which frame.
+/// Requested interval and frame of a bundle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stream {
-    /// Time between two, ms; 0 leaves it to the server.
+    /// Interval, ms; 0 lets the server choose.
     pub interval_ms: u32,
-    /// The frame; empty leaves it to the server.
+    /// Frame; empty lets the server choose.
     pub frame: String,
 }
 
-/// A place, and how it is turned.
+/// A position and an orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Where, mm.
     pub place_mm: [f32; 3],
-    /// A quaternion, its scalar last; `None` if it is not told.
+    /// A quaternion, its scalar last; `None` if not given.
     pub turn: Option<[f32; 4]>,
 }
 
 /// Values of a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensor {
-    /// The sensor's own.
+    /// The sensor's own status code.
     pub status: u8,
-    /// Of all values.
+    /// Unit of all values.
     pub unit: Unit,
-    /// The values, at most 255.
+    /// At most 255.
     pub values: Vec<f64>,
 }
 
-/// Codes of a status that are used here; others are kept as numbers.
+/// The status codes used here; other codes are kept as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StatusCode(pub u16);
 
@@ -130,43 +126,41 @@ impl StatusCode {
     pub const OK: Self = Self(1);
     /// Stopped in an emergency.
     pub const PANIC: Self = Self(3);
-    /// Not known here.
+    /// Unknown here.
     pub const NOT_FOUND: Self = Self(4);
     /// No room for another client.
     pub const BUSY: Self = Self(6);
-    /// Nothing comes any more.
+    /// No more data arrive.
     pub const TIMEOUT: Self = Self(7);
     /// A request that cannot be read.
     pub const ILLEGAL: Self = Self(12);
-    /// Not ready.
     pub const NOT_READY: Self = Self(13);
-    /// It is not there.
+    /// Missing.
     pub const ABSENT: Self = Self(16);
     /// The hardware has failed.
     pub const HARDWARE: Self = Self(18);
-    /// It ends.
+    /// Ending.
     pub const ENDING: Self = Self(19);
 }
 
-/// How a device is.
+/// Status of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// In general.
+    /// General code.
     pub code: StatusCode,
-    /// In particular.
+    /// Specific code.
     pub subcode: i64,
-    /// One word for it, at most 20 bytes.
+    /// A short name, at most 20 bytes.
     pub name: String,
     /// A sentence.
     pub text: String,
 }
 
-/// A text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     /// The number of its character set in the list of IANA: 3 ASCII, 106 UTF-8.
     pub encoding: u16,
-    /// Its bytes, at most 65 535.
+    /// At most 65 535.
     pub bytes: Vec<u8>,
 }
 
@@ -174,7 +168,7 @@ impl Text {
     const ASCII: u16 = 3;
     const UTF_8: u16 = 106;
 
-    /// Of this text; what is too long is cut off.
+    /// Makes a text; a text that is too long is cut off.
     pub fn of(text: &str) -> Self {
         let mut end = text.len().min(usize::from(u16::MAX));
         while !text.is_char_boundary(end) {
@@ -186,7 +180,7 @@ impl Text {
     }
 }
 
-/// What a message says.
+/// The content of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     Transform(Matrix),
@@ -197,13 +191,13 @@ pub enum Content {
     Status(Status),
     Text(Text),
     Image(Image),
-    /// Types of messages that a program knows.
+    /// Message types that a program supports.
     Capability(Vec<String>),
-    /// A request; how often, where the kind has that.
+    /// A request, with its interval for kinds that have one.
     Request(Verb, Kind, Option<Stream>),
-    /// What became of a request for data of this kind: 0 if it is carried out.
+    /// Result of a request for data of this kind: 0 if it was accepted.
     Answer(Kind, u8),
-    /// Of a type that is not read here.
+    /// A message type that is not parsed here.
     Other(String),
 }
 
@@ -212,7 +206,7 @@ const TYPE: usize = 12;
 const FRAME: usize = 32;
 
 impl Content {
-    /// Its type, in the header.
+    /// Its type, as in the header.
     pub fn kind(&self) -> String {
         let known = match self {
             Self::Transform(_) => Kind::Transform,
@@ -231,7 +225,7 @@ impl Content {
         known.name().to_owned()
     }
 
-    /// Adds its bytes.
+    /// Appends its bytes.
     pub(super) fn put(&self, bytes: &mut Vec<u8>) {
         match self {
             Self::Transform(matrix) => matrix.put(bytes),
@@ -273,7 +267,7 @@ impl Content {
         }
     }
 
-    /// What the content of a message of this type says.
+    /// Parses the content of a message of this type.
     pub(super) fn take(name: &str, content: &[u8]) -> Result<Self, Wrong> {
         if let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == name) {
             return Self::data(kind, content);
@@ -320,7 +314,7 @@ impl Content {
                 let place_mm = from.f32s()?;
                 let turn = match bytes {
                     28 => Some(from.f32s()?),
-                    // The short form has no scalar: what is left of the length 1.
+                    // The short form omits the scalar, which follows from the length 1.
                     24 => Some(from.f32s().map(with_scalar)?),
                     _ => None,
                 };

@@ -1,18 +1,18 @@
-//! A picture: one slice of coloured pixels.
+//! An image: one slice of coloured pixels.
 
 use super::{
     Wrong,
     wire::{Cursor, put_f32s},
 };
 
-/// A picture of 8 bits a colour, its first pixel at the upper left.
+/// An image with 8 bits per colour, the first pixel at the upper left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Width and height.
     pub size_px: [u16; 2],
     /// Colours of a pixel: 1 grey, 3 red, green and blue.
     pub colours: u8,
-    /// The pixels, line by line.
+    /// Row by row.
     pub pixels: Vec<u8>,
 }
 
@@ -31,7 +31,7 @@ impl Image {
         bytes.extend(VERSION.to_be_bytes());
         bytes.extend([self.colours, BYTES_OF_8_BITS, LITTLE_ENDIAN, RAS]);
         bytes.extend(size.as_flattened());
-        // Pixels of 1 mm; the place of a picture in space is not told.
+        // Pixels of 1 mm; the position of the image in space is not given.
         put_f32s(bytes, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
         bytes.extend([0; 6]);
         bytes.extend(size.as_flattened());

@@ -1,4 +1,4 @@
-//! A message: its header, what comes with it in version 3 of the protocol, and its content.
+//! A message: its header, the extended header and metadata of protocol version 3, and its content.
 
 use crc::{CRC_64_ECMA_182, Crc};
 
@@ -7,7 +7,7 @@ use super::{
     wire::{Cursor, put_name},
 };
 
-/// What stands before every body.
+/// The header of every message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
     /// 1 in versions 1 and 2 of the protocol, 2 in version 3.
@@ -16,30 +16,29 @@ pub struct Header {
     pub kind: String,
     /// The name of the device.
     pub device: String,
-    /// When, ns since 1970 (UTC); 0 if it is not told.
+    /// Time, ns since 1970 (UTC); 0 if not given.
     pub time_ns: u64,
-    /// Bytes that follow. Anybody may write any number here.
+    /// Size of the body. Untrusted: may be any number.
     pub body_bytes: u64,
     /// Checksum of the body.
     pub crc: u64,
 }
 
-/// Checksum of a body.
 pub(super) const CRC: Crc<u64> = Crc::<u64>::new(&CRC_64_ECMA_182);
 
 const TYPE: usize = 12;
 const DEVICE: usize = 20;
-/// Of the part that version 3 puts before the content.
+/// Size of the extended header, which version 3 puts before the content.
 const EXTENDED: usize = 12;
 
 impl Header {
-    /// Bytes of one.
+    /// Size of a header.
     pub const BYTES: usize = 58;
 
-    /// Reads one.
+    /// Parses a header.
     ///
     /// # Errors
-    /// [`Wrong`] if the bytes are none.
+    /// [`Wrong`] if the bytes are not a header.
     pub fn read(bytes: &[u8]) -> Result<Self, Wrong> {
         let mut from = Cursor(bytes);
         let version = from.u16()?;
@@ -56,31 +55,30 @@ impl Header {
     }
 }
 
-/// A message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
     /// The name of the device, at most 20 bytes.
     pub device: String,
-    /// When, ns since 1970 (UTC).
+    /// ns since 1970 (UTC).
     pub time_ns: u64,
-    /// What it says.
+    /// Its content.
     pub content: Content,
 }
 
 impl Message {
-    /// Of this device and time (ns since 1970, UTC).
+    /// A message of this device and time (ns since 1970, UTC).
     pub fn new(device: &str, time_ns: u64, content: Content) -> Self {
         Self { device: device.to_owned(), time_ns, content }
     }
 
-    /// Its bytes, as every version of the protocol reads them.
+    /// Returns its bytes, readable by every version of the protocol.
     pub fn encode(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         self.put(&mut bytes);
         bytes
     }
 
-    /// Adds its bytes.
+    /// Appends its bytes.
     pub fn put(&self, bytes: &mut Vec<u8>) {
         let begin = bytes.len();
         bytes.extend(1_u16.to_be_bytes());
@@ -96,10 +94,10 @@ impl Message {
         bytes[body - 8..body].copy_from_slice(&crc.to_be_bytes());
     }
 
-    /// Reads the body that belongs to a header. Metadata are left out.
+    /// Parses the body that belongs to a header. Metadata are left out.
     ///
     /// # Errors
-    /// [`Wrong`] if it is damaged or no message of its type.
+    /// [`Wrong`] if it is damaged or not a message of its type.
     pub fn read(header: &Header, body: &[u8]) -> Result<Self, Wrong> {
         if body.len() as u64 != header.body_bytes {
             return Err(Wrong::Short);
@@ -113,7 +111,7 @@ impl Message {
     }
 }
 
-/// The content in a body of version 3: behind the extended header, before the metadata.
+/// Returns the content in a body of version 3: after the extended header, before the metadata.
 fn within(body: &[u8]) -> Result<&[u8], Wrong> {
     let mut from = Cursor(body);
     let extended = usize::from(from.u16()?);
@@ -128,7 +126,7 @@ fn within(body: &[u8]) -> Result<&[u8], Wrong> {
     Ok(content)
 }
 
-/// Whether metadata fit their own counts: a list of lengths, then keys and values.
+/// Checks that metadata match their own counts: a list of lengths, then keys and values.
 fn metadata(region: &[u8], index: usize, values: usize) -> Result<(), Wrong> {
     if index == 0 && values == 0 {
         return Ok(());

@@ -1,11 +1,11 @@
-//! A server that tells clients what a loop does. Nothing that a client sends reaches the loop.
+//! A server that reports the state of a loop to clients. Nothing that a client sends reaches the loop.
 //!
 //! | thread | does |
 //! |---|---|
-//! | the recorder's | [`Watching`] copies a moment into a bounded queue when a client is due, or a state has changed; never waits |
-//! | hub | makes messages of it for each client, into its [`Mailbox`], where a newer bundle takes the place of the one before |
-//! | listener | takes clients in, up to [`MOST_CLIENTS`] |
-//! | reader, writer | of each client: hear its requests, no faster than they should be; send, and give the client up that takes nothing |
+//! | the recorder's | [`Watching`] copies the state into a bounded queue when a client is due or a state has changed; never waits |
+//! | hub | writes messages for each client into its [`Mailbox`], where a newer bundle replaces the older one |
+//! | listener | accepts clients, up to [`MOST_CLIENTS`] |
+//! | reader, writer (per client) | receive its requests, limited in rate; send, and disconnect a client that reads nothing |
 
 mod audience;
 mod client;
@@ -36,41 +36,36 @@ use tracing::{info, warn};
 pub use self::picture::Pictures;
 use self::{audience::Watching, client::Client, hub::Hub, moment::Told};
 
-/// The port that the programs of this protocol use.
+/// The protocol's usual port.
 pub const PORT: u16 = 18_944;
-/// The device of the endoscope's pictures.
+/// Device name of the endoscope images.
 pub const IMAGE_DEVICE: &str = "endoscope";
-/// Clients at once.
+/// Maximum number of clients.
 const MOST_CLIENTS: usize = 8;
-/// What waits for the hub, at most: far more than comes while it is held up for a moment.
+/// Maximum number of entries waiting for the hub: far more than arrive during a short delay.
 const QUEUE: usize = 256;
-/// How often the listener looks for clients, and how long it rests after each.
+/// Interval at which the listener checks for clients, and its pause after each.
 const LISTEN_EVERY: Duration = Duration::from_millis(20);
 const AFTER_CLIENT: Duration = Duration::from_millis(5);
 
-/// A sentence for a state: what is wrong and what to do, or nothing.
+/// Returns a sentence for a state: fault and remedy, or an empty text.
 pub type StateWords = fn(LoopState) -> String;
 
-/// What is known of a loop before it begins.
+/// Information about a loop before it begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// The trocar of each side, m (`world`), through which its shaft goes; `None` where it is not known.
+    /// The trocar of each side, m (`world`), through which its shaft passes; `None` if unknown.
     pub trocars_m: [Option<Vector3<f64>>; SIDES],
 }
 
-/// Why nobody can listen.
+/// Why the server cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum IgtlError {
     /// The address cannot be used.
     #[error(
-        "OpenIGTLink: cannot listen at {address}: {source}; end the program that uses this port, or name another one"
+        "OpenIGTLink: cannot listen at {address}: {source}; end the program that uses this port, or choose another port"
     )]
-    Listen {
-        /// The address.
-        address: SocketAddr,
-        /// Why.
-        source: io::Error,
-    },
+    Listen { address: SocketAddr, source: io::Error },
     /// The operating system gives no thread.
     #[error("OpenIGTLink: cannot start a thread: {0}; end other programs, then try again")]
     Thread(#[source] io::Error),
@@ -83,13 +78,13 @@ pub struct Server {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// What the threads share.
+/// State shared by the threads.
 struct Shared {
     told: Sender<Told>,
     clients: Mutex<Vec<Arc<Client>>>,
-    /// The loop's time (s, as bits) from which on a client wants something; infinite without one.
+    /// The loop's time (s, as bits) at which a client's next data are due; infinite if there are none.
     due: AtomicU64,
-    /// Moments that found no room in the queue.
+    /// States that were dropped because the queue was full.
     dropped: AtomicU64,
     ends: AtomicBool,
     words: StateWords,
@@ -109,7 +104,7 @@ impl Shared {
         self.due.store(due_s.to_bits(), Ordering::Relaxed);
     }
 
-    /// Somebody wants something with the next tick.
+    /// Requests data with the next tick.
     fn hurry(&self) {
         let _clients = self.clients();
         self.set_due(f64::NEG_INFINITY);
@@ -121,7 +116,7 @@ impl Shared {
 }
 
 impl Server {
-    /// Listens at this address; with port 0 at any free port. `words` are for the text of a status.
+    /// Listens at this address; port 0 selects a free one. `words` returns the text of a status.
     ///
     /// # Errors
     /// [`IgtlError`] if the address is not this computer's or the port is in use.
@@ -161,27 +156,26 @@ impl Server {
         Ok(())
     }
 
-    /// Where it listens.
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Clients that are connected now.
+    /// Number of connected clients.
     pub fn clients(&self) -> usize {
         self.shared.clients().iter().filter(|client| !client.is_gone()).count()
     }
 
-    /// Moments that clients did not get, because this computer was too busy.
+    /// States that clients did not get because this computer was too busy.
     pub fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
 
-    /// For the recorder of the next loop, of which this is known.
+    /// Returns the audience for the recorder of the next loop.
     pub fn audience(&self, outline: Outline) -> Box<dyn Audience> {
         Box::new(Watching::new(Arc::clone(&self.shared), outline))
     }
 
-    /// From now on clients that ask for pictures get those of this source, or none.
+    /// Sets the source of images for clients that request them, or removes it.
     pub fn show(&self, source: Option<Box<dyn Pictures>>) {
         self.shared.pictures.put(source);
     }
@@ -211,7 +205,7 @@ impl fmt::Debug for Shared {
     }
 }
 
-/// Takes clients in until the server ends, and waits for their threads.
+/// Accepts clients until the server ends, then waits for their threads.
 fn listen(listener: &TcpListener, shared: &Arc<Shared>) {
     let mut threads: Vec<JoinHandle<()>> = Vec::new();
     while !shared.is_ending() {
@@ -221,7 +215,7 @@ fn listen(listener: &TcpListener, shared: &Arc<Shared>) {
                 take_in(stream, shared, &mut threads);
                 sleep(AFTER_CLIENT);
             }
-            // Nobody, or the operating system has no room for another connection now.
+            // No client, or the operating system has no room for another connection now.
             Err(_) => sleep(LISTEN_EVERY),
         }
         threads.retain(|thread| !thread.is_finished());
@@ -234,7 +228,7 @@ fn listen(listener: &TcpListener, shared: &Arc<Shared>) {
     }
 }
 
-/// A client that cannot be served is closed.
+/// Serves a client, or closes its connection if that is impossible.
 fn take_in(stream: TcpStream, shared: &Arc<Shared>, threads: &mut Vec<JoinHandle<()>>) {
     let mut clients = shared.clients();
     clients.retain(|client| !client.is_gone());
@@ -261,5 +255,5 @@ fn take_in(stream: TcpStream, shared: &Arc<Shared>, threads: &mut Vec<JoinHandle
     threads.extend([writes, reads].into_iter().flatten());
 }
 
-/// What the hub hears.
+/// Input of the hub.
 type Hears = Receiver<Told>;

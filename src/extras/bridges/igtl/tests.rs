@@ -1,4 +1,4 @@
-//! The codec against bytes of the reference library, against damage, and against everything else.
+//! The codec against bytes of the reference library, damaged and random messages.
 
 use super::{message::CRC, *};
 
@@ -15,7 +15,7 @@ fn read(message: &[u8]) -> Result<Message, Wrong> {
     Message::read(&Header::read(head)?, body)
 }
 
-/// A message of this type with this content, with a right checksum.
+/// A message of this type with this content and a correct checksum.
 fn framed(kind: &str, version: u16, body: &[u8]) -> Vec<u8> {
     let mut message = Message::new("Device", 0, Content::Other(kind.to_owned())).encode();
     message[..2].copy_from_slice(&version.to_be_bytes());
@@ -36,7 +36,7 @@ const POSE: Matrix = Matrix([
 #[test]
 fn units_are_packed_as_the_protocol_says() {
     assert_eq!(Unit::NEWTON, Unit(0x02C4_0000_0000_0000));
-    // m/s^2, as the reference library's test has it.
+    // m/s^2, as in the reference library's test.
     assert_eq!(Unit::of(0, &[(1, 1), (3, -2)]), Unit(0x0044_3E00_0000_0000));
     assert_eq!(Unit::of(0xB, &[(1, 1)]).0 >> 60, 0xB);
 }
@@ -89,7 +89,6 @@ fn what_the_reference_library_meant_is_what_is_read() {
     assert_eq!(of("capability"), Content::Capability(types.to_vec()));
 }
 
-/// One message of every kind.
 fn every_kind() -> Vec<Message> {
     let stream = Stream { interval_ms: 16, frame: "world".to_owned() };
     let image = Image { size_px: [3, 2], colours: 3, pixels: (0..18).collect() };
@@ -214,7 +213,7 @@ fn damage_is_noticed() {
     }
     assert_eq!(read(&good[..good.len() - 1]), Err(Wrong::Short));
     assert_eq!(read(&good[..57]), Err(Wrong::Short));
-    // A length that nobody can have.
+    // An impossible length.
     let mut huge = good[..Header::BYTES].to_vec();
     huge[Header::BYTES - 16..Header::BYTES - 8].fill(0xFF);
     let header = Header::read(&huge).unwrap();
@@ -231,7 +230,7 @@ fn names_that_are_too_long_are_cut_between_characters() {
     assert_eq!((text.bytes.len(), text.encoding), (65_534, 106));
 }
 
-/// Random bytes, and damaged messages with a checksum that fits: whatever is read can be written, and reads the same.
+/// Random bytes, and damaged messages with a matching checksum: every parsed message can be written and reads the same.
 fn attack(rounds: u32, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let good: Vec<Vec<u8>> =
@@ -252,7 +251,7 @@ fn attack(rounds: u32, seed: u64) {
         let header = Header { body_bytes: body.len() as u64, crc: CRC.checksum(&body), ..header };
         let Ok(message) = Message::read(&header, &body) else { continue };
         let again = read(&message.encode()).unwrap();
-        // Not a number is not equal to itself; the bytes are.
+        // NaN is not equal to itself; the bytes are.
         assert_eq!(again.encode(), message.encode(), "NIMA_FUZZ_SEED={seed}");
     }
 }

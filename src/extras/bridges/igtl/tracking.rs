@@ -5,15 +5,15 @@ use super::{
     wire::{Cursor, put_f32s, put_name},
 };
 
-/// A pose as `OpenIGTLink` has it: three columns of a rotation, then the place (mm).
+/// A pose in the form of `OpenIGTLink`: three columns of a rotation, then the position (mm).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix(pub [[f32; 3]; 4]);
 
 impl Matrix {
-    /// Bytes of one.
+    /// Size in bytes.
     pub(super) const BYTES: usize = 48;
 
-    /// Not turned, at this place (mm).
+    /// A pose without rotation at this position (mm).
     pub const fn at(place_mm: [f32; 3]) -> Self {
         Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], place_mm])
     }
@@ -27,16 +27,16 @@ impl Matrix {
     }
 }
 
-/// What is known of the pose of a tool.
+/// The known part of a tool's pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToolKind {
     /// The tracker itself.
     Tracker,
-    /// Its whole pose.
+    /// The whole pose.
     SixD,
-    /// Its place.
+    /// The position.
     ThreeD,
-    /// Its place and the direction of its axis.
+    /// The position and the direction of the axis.
     FiveD,
 }
 
@@ -56,31 +56,29 @@ impl ToolKind {
 /// A tool in a bundle `TDATA`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
-    /// Its name, at most 20 bytes.
+    /// At most 20 bytes.
     pub name: String,
-    /// What is known of its pose.
+    /// The known part of its pose.
     pub kind: ToolKind,
-    /// Its pose.
     pub pose: Matrix,
 }
 
 /// A tool in a bundle `QTDATA`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
-    /// Its name, at most 20 bytes.
+    /// At most 20 bytes.
     pub name: String,
-    /// What is known of its pose.
+    /// The known part of its pose.
     pub kind: ToolKind,
-    /// Its place, mm.
     pub place_mm: [f32; 3],
-    /// How it is turned: a quaternion, its scalar last.
+    /// Orientation: a quaternion, its scalar last.
     pub turn: [f32; 4],
 }
 
 const NAME: usize = 20;
 
 impl Tool {
-    /// Bytes of one.
+    /// Size in bytes.
     pub(super) const BYTES: usize = NAME + 2 + Matrix::BYTES;
 
     pub(super) fn put(&self, bytes: &mut Vec<u8>) {
@@ -97,7 +95,7 @@ impl Tool {
 }
 
 impl Turned {
-    /// Bytes of one.
+    /// Size in bytes.
     pub(super) const BYTES: usize = NAME + 2 + 28;
 
     pub(super) fn put(&self, bytes: &mut Vec<u8>) {

@@ -5,10 +5,10 @@
 pub struct Unit(pub u64);
 
 impl Unit {
-    /// Newton.
     pub const NEWTON: Self = Self::of(0, &[(0xB, 1)]);
 
-    /// From the number of a prefix, and numbers of units with their powers (-8 to 7); more than six are left out.
+    /// Makes a unit from the number of a prefix, and numbers of units with their powers (-8 to 7); more than six are
+    /// left out.
     pub const fn of(prefix: u8, units: &[(u8, i8)]) -> Self {
         let mut packed = (prefix as u64 & 0xF) << 60;
         let mut place = 0;

@@ -1,8 +1,8 @@
-//! Numbers and names as they stand in a message: big-endian, names padded with zeros.
+//! Numbers and names in a message: big-endian, names padded with zeros.
 
 use super::Wrong;
 
-/// Takes numbers from the front of bytes.
+/// Reads numbers from the front of bytes.
 #[derive(Clone, Debug)]
 pub(super) struct Cursor<'a>(pub(super) &'a [u8]);
 
@@ -43,7 +43,7 @@ impl<'a> Cursor<'a> {
         Ok(f64::from_be_bytes(self.array()?))
     }
 
-    /// A name in a field of this length.
+    /// Reads a name in a field of this length.
     pub(super) fn name(&mut self, length: usize) -> Result<String, Wrong> {
         let field = self.bytes(length)?;
         let end = field.iter().position(|byte| *byte == 0).unwrap_or(length);
@@ -51,7 +51,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Adds a name in a field of this length. What does not fit is cut off between two characters.
+/// Appends a name in a field of this length. A longer name is cut between two characters.
 pub(super) fn put_name(bytes: &mut Vec<u8>, name: &str, length: usize) {
     let mut end = name.len().min(length);
     while !name.is_char_boundary(end) {

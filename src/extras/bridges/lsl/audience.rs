@@ -1,4 +1,4 @@
-//! On the recorder's thread: what happened becomes a mark with a stamp.
+//! The part on the recorder's thread: converts events into markers with time stamps.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ const HAPPENINGS: &str = "happenings";
 const LOG: &str = "log";
 const OPERATORS: &str = "mark";
 
-/// What of a session is heard beside its ticks.
+/// The topics of a session that are used, in addition to its ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Topic {
     Happenings,
@@ -29,10 +29,10 @@ enum Topic {
     Other,
 }
 
-/// Marks that wait until the clock is known, at most.
+/// Maximum number of markers that wait until the clock is known.
 const MOST_EARLY: usize = 1024;
 
-/// Marks one session.
+/// Makes the markers of one session.
 #[derive(Debug)]
 pub(super) struct Marking {
     shared: Arc<Shared>,
@@ -43,7 +43,7 @@ pub(super) struct Marking {
     started_ns: u64,
     /// Time of the last tick, s.
     last_s: Option<f64>,
-    /// What happened before the clock was known, at these times of the loop, s.
+    /// Events from before the clock was known, with their times of the loop, s.
     early: Vec<(f64, String)>,
 }
 
@@ -57,7 +57,7 @@ impl Marking {
         Self { shared, trial, follower, clock, channels, started_ns: 0, last_s: None, early }
     }
 
-    /// At this time of the loop, s. The order of time is the caller's.
+    /// Adds a marker at this time of the loop, s. The caller keeps the order of time.
     fn mark(&mut self, t_s: f64, what: String) {
         match self.clock.settled(t_s) {
             Some(at_s) => self.shared.mark(at_s, what),
@@ -66,7 +66,7 @@ impl Marking {
         }
     }
 
-    /// Sends what waited.
+    /// Sends the waiting markers.
     fn catch_up(&mut self) {
         for (t_s, what) in std::mem::take(&mut self.early) {
             if let Some(at_s) = self.clock.at(t_s) {
@@ -92,7 +92,7 @@ impl Audience for Marking {
     fn message(&mut self, channel: usize, log_time_ns: u64, data: &[u8]) {
         let what = match self.channels.get(channel) {
             Some(Topic::Happenings) => happening(data),
-            // The operator's marks; all other lines are told by ticks.
+            // Only the operator's marks; all other lines are covered by ticks.
             Some(Topic::Log) => Log::decode(data).ok().filter(|log| log.name == OPERATORS).map(|log| log.message),
             _ => None,
         };

@@ -1,22 +1,22 @@
-//! The loop's time by the clock of LSL.
+//! Converts the loop's time to LSL time.
 
-/// The loop's clock may run this much slower than that of LSL.
+/// The loop's clock may run slower than LSL's by this factor.
 const DRIFT: f64 = 1e-3;
 
-/// The estimate is used when ticks have been seen for so long, s: the first ones are often late.
+/// The estimate is used after ticks have been seen for this long, s: the first ones are often late.
 const SETTLES_S: f64 = 0.2;
 
-/// Estimated from when ticks are known here: the least delay counts.
+/// Estimated from the arrival of ticks; the smallest delay counts.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LoopClock {
-    /// The clock of LSL minus the loop's, s, and when it was last seen, s.
+    /// LSL time minus the loop's time, s, and when it was last observed, s.
     offset_s: Option<(f64, f64)>,
-    /// When it was first seen, s.
+    /// When it was first observed, s.
     since_s: Option<f64>,
 }
 
 impl LoopClock {
-    /// A tick of this time (s) is known at this time of LSL, s.
+    /// Notes the arrival of a tick of this time (s) at this LSL time, s.
     pub(super) fn note(&mut self, t_s: f64, now_s: f64) {
         let offset_s = now_s - t_s;
         let least_s = self.offset_s.map_or(offset_s, |(least_s, at_s)| offset_s.min(least_s + DRIFT * (now_s - at_s)));
@@ -24,14 +24,14 @@ impl LoopClock {
         self.since_s.get_or_insert(now_s);
     }
 
-    /// The same, once the estimate can be relied on.
+    /// Returns the LSL time once the estimate is reliable.
     pub(super) fn settled(&self, t_s: f64) -> Option<f64> {
         let since_s = self.since_s?;
         let (_, now_s) = self.offset_s?;
         self.at(t_s).filter(|_| now_s - since_s >= SETTLES_S)
     }
 
-    /// A time of the loop by the clock of LSL, s.
+    /// Returns the LSL time of a time of the loop, s.
     pub(super) fn at(&self, t_s: f64) -> Option<f64> {
         self.offset_s.map(|(offset_s, _)| t_s + offset_s)
     }
@@ -47,8 +47,8 @@ mod tests {
         assert_eq!((clock.at(1.0), clock.settled(1.0)), (None, None));
         for tick in 0..20_000_u32 {
             let t_s = f64::from(tick) * 1e-3;
-            // The disk held the recorder up for half a second; usually a tick is known within 0.3 ms.
-            // The first ones wait for the file to be begun.
+            // The disk delayed the recorder by half a second; usually a tick arrives within 0.3 ms. The first ones wait
+            // for the file to be created.
             let late_s = match tick {
                 0..50 => 0.05 - t_s,
                 1000..1500 => 1.5 - t_s,

@@ -14,12 +14,12 @@ use libloading::Library;
 
 use super::LslError;
 
-/// The oldest version (100 times the major number, and the minor one) with the functions and the protocol that are used here.
+/// The oldest version (100 times the major number plus the minor one) with the required functions and protocol.
 const VERSION_MIN: i32 = 113;
-/// The value of C's `cft_string`, and a rate that is none.
+/// The value of C's `cft_string`, and the rate of an irregular stream.
 const STRINGS: i32 = 3;
 const IRREGULAR: f64 = 0.0;
-/// Seconds that are kept for a listener that was away.
+/// Seconds buffered for a listener that was disconnected.
 const BUFFER_S: i32 = 360;
 const PUSH_THROUGH: i32 = 1;
 
@@ -30,12 +30,12 @@ const NAMES: &[&str] = &["lsl.dll", "liblsl64.dll"];
 const NAMES: &[&str] = &["liblsl.2.dylib", "liblsl.dylib", "/opt/homebrew/lib/liblsl.dylib"];
 #[cfg(not(any(target_os = "windows", target_os = "macos")))]
 const NAMES: &[&str] = &["liblsl.so.2", "liblsl.so", "liblsl64.so", "/usr/local/lib/liblsl.so"];
-/// The variable by which Python's `pylsl` finds it too.
+/// The environment variable that Python's `pylsl` uses too.
 const VARIABLE: &str = "PYLSL_LIB";
 
 macro_rules! library {
     ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
-        /// The functions that are used here, with the types of its C header.
+        /// The functions used here, with the types of its C header.
         #[derive(Clone, Copy, Debug)]
         pub(super) struct Lsl {
             $($field: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
@@ -46,7 +46,7 @@ macro_rules! library {
             fn of(library: &Library) -> Result<Self, &'static str> {
                 Ok(Self {
                     $(
-                        // SAFETY: the type is that of the symbol's declaration in the library's header; the library is never
+                        // SAFETY: the type matches the symbol's declaration in the library's header; the library is never
                         // unloaded, so the pointer stays valid.
                         $field: unsafe { *library.get($symbol).map_err(|_| $symbol)? },
                     )*
@@ -70,17 +70,17 @@ library! {
     last_error = "lsl_last_error": fn() -> *const c_char;
 }
 
-/// What describes a stream.
+/// Description of a stream.
 pub(super) struct Info<'a> {
     pub(super) name: &'a str,
     pub(super) kind: &'a str,
-    /// The same after a restart, so that a listener finds it again.
+    /// The same after a restart, so that a listener recovers the stream.
     pub(super) source: &'a str,
     pub(super) about: &'a [(&'a str, &'a str)],
 }
 
 impl Lsl {
-    /// Loads it: this file, or what is installed.
+    /// Loads this file, or the installed library.
     pub(super) fn open(named: Option<&Path>) -> Result<Self, LslError> {
         if let Some(path) = named {
             return if path.is_file() { Self::load(path) } else { Err(missing(&path.display().to_string())) };
@@ -99,7 +99,7 @@ impl Lsl {
 
     fn load(path: &Path) -> Result<Self, LslError> {
         let unusable = |reason| LslError::Unusable { path: path.to_owned(), reason };
-        // SAFETY: loading runs the library's initialisation. It is the one that the user has named or installed.
+        // SAFETY: loading runs the library's initialisation. The user has named or installed this library.
         let library = unsafe { Library::new(path) }.map_err(|error| {
             let source = std::error::Error::source(&error).map(ToString::to_string);
             unusable(source.unwrap_or_else(|| error.to_string()))
@@ -110,18 +110,18 @@ impl Lsl {
         if version < VERSION_MIN {
             return Err(unusable(format!("its version {}.{} is too old", version / 100, version % 100)));
         }
-        // Forgotten, so that it is never unloaded.
+        // Leaked on purpose, so that it is never unloaded.
         std::mem::forget(library);
         Ok(lsl)
     }
 
-    /// The clock of all stamps on this computer, s.
+    /// LSL time, s.
     pub(super) fn local_clock(&self) -> f64 {
         // SAFETY: no arguments.
         unsafe { (self.local_clock)() }
     }
 
-    /// Offers a stream of texts.
+    /// Creates a stream of texts.
     pub(super) fn stream(&self, info: &Info<'_>) -> Result<Stream, LslError> {
         let [name, kind, source] = [info.name, info.kind, info.source].map(text);
         // SAFETY: C strings that live through the call, which copies them.
@@ -145,7 +145,7 @@ impl Lsl {
     }
 
     fn refused(&self) -> LslError {
-        // SAFETY: the library gives a text that is valid until its next call on this thread, or nothing.
+        // SAFETY: the library returns null or a text that is valid until the next call on this thread.
         let reason = unsafe {
             let reason = (self.last_error)();
             if reason.is_null() { String::new() } else { CStr::from_ptr(reason).to_string_lossy().into_owned() }
@@ -159,32 +159,32 @@ fn missing(searched: &str) -> LslError {
     LslError::Missing { searched: searched.to_owned() }
 }
 
-/// As C has it; a text with a zero in it ends there.
+/// A C string; a text with a zero in it ends there.
 fn text(of: &str) -> CString {
     CString::new(of.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
 
-/// A stream that is offered. Dropping it ends it.
+/// A stream. Dropping it ends it.
 #[derive(Debug)]
 pub(super) struct Stream {
     lsl: Lsl,
     outlet: NonNull<c_void>,
 }
 
-// SAFETY: the library's outlets may be used from any thread; this one is used by one at a time.
+// SAFETY: an outlet may be used from any thread; this one is used by one thread at a time.
 unsafe impl Send for Stream {}
 
 impl Stream {
-    /// Sends this text with this stamp, s.
+    /// Sends this text with this time stamp, s.
     pub(super) fn push(&self, what: &str, at_s: f64) {
         let what = text(what);
         let sample = [what.as_ptr()];
-        // SAFETY: the outlet is valid; one C string for its one channel lives through the call, which copies it.
+        // SAFETY: the outlet is valid; the C string for its only channel lives through the call, which copies it.
         // It fails for a wrong number of channels only.
         unsafe { (self.lsl.push_sample_strtp)(self.outlet.as_ptr(), sample.as_ptr(), at_s, PUSH_THROUGH) };
     }
 
-    /// Whether somebody listens.
+    /// Whether a listener is connected.
     pub(super) fn is_heard(&self) -> bool {
         // SAFETY: the outlet is valid.
         unsafe { (self.lsl.have_consumers)(self.outlet.as_ptr()) != 0 }

@@ -1,6 +1,7 @@
-//! What becomes a mark, and how it reads.
+//! The events that become markers, and their texts.
 //!
-//! A mark is a few words that a program can split at spaces: what, of which side, and numbers. Nothing in it tells how forces are rendered.
+//! A marker is a few words that a program can split at spaces: event, side, and numbers. It contains nothing about the
+//! rendering of forces.
 
 use nima_core::safety::State;
 use nima_machine::{
@@ -9,9 +10,9 @@ use nima_machine::{
 };
 use serde_json::{Map, Value};
 
-/// Contact ends below this share of the force with which it begins.
+/// Contact ends below this fraction of the force at which it begins.
 const CONTACT_ENDS: f64 = 0.5;
-/// The fields of a happening that stand first in its mark.
+/// The fields of an event that come first in its marker.
 const EVENT: &str = "event";
 const TIME: &str = "t_s";
 
@@ -29,7 +30,7 @@ impl Follower {
         Self { contact_n, words, states: [None; SIDES], contacts: [false; SIDES] }
     }
 
-    /// What has happened with these ticks.
+    /// Reports the events in these ticks.
     pub(super) fn tick(&mut self, ticks: &[Option<Tick>; SIDES], mut mark: impl FnMut(String)) {
         for tick in ticks.iter().flatten() {
             let side = tick.side;
@@ -41,7 +42,7 @@ impl Follower {
             let force_n = tick.measured_n.norm();
             let was = self.contacts[place];
             let least_n = if was { CONTACT_ENDS * self.contact_n } else { self.contact_n };
-            // A force that is not known is no contact.
+            // An unknown force does not count as contact.
             let is = tick.state != State::Disconnected && force_n >= least_n;
             self.contacts[place] = is;
             if is != was {
@@ -68,7 +69,7 @@ impl Follower {
     }
 }
 
-/// A happening of a session as a mark: `task ring_dropped in_view=false ring=2 side=left`.
+/// Converts an event of a session to a marker: `task ring_dropped in_view=false ring=2 side=left`.
 pub(super) fn happening(message: &[u8]) -> Option<String> {
     let fields: Map<String, Value> = serde_json::from_slice(message).ok()?;
     let event = fields.get(EVENT)?.as_str()?;

@@ -1,4 +1,4 @@
-//! Marks of a loop, without the library; with it where it is installed (`NIMA_LIBLSL` names its file).
+//! Markers of a loop, without the library; with it where it is installed (`NIMA_LIBLSL` names its file).
 
 use std::path::Path;
 
@@ -28,7 +28,7 @@ fn ticks() -> Vec<[Option<Tick>; SIDES]> {
     (0..1800).map(|number| [Some(at(number, &tick)), None]).collect()
 }
 
-/// Such a tick by its number.
+/// A copy of this tick with another number.
 fn at(number: u32, like: &Tick) -> Tick {
     let mut tick = *like;
     tick.index = u64::from(number);
@@ -38,7 +38,7 @@ fn at(number: u32, like: &Tick) -> Tick {
         1500..1600 => State::Stopped,
         _ => State::Idle,
     };
-    // Around the limit the force trembles: a mark at every crossing would be many.
+    // The force trembles around the threshold: a marker at every crossing would be too many.
     let tremble_n = if number.is_multiple_of(2) { 0.03 } else { -0.03 };
     let touches = (0.5..1.0).contains(&tick.t_s);
     let force_n = if touches { 0.2 + tremble_n + (tick.t_s - 0.5).min(1.0 - tick.t_s) } else { 0.0 };
@@ -61,7 +61,7 @@ fn a_session_gives_each_mark_once_at_its_tick() {
 
 #[test]
 fn marks_tell_no_condition() {
-    // The same session with every number of the rendering changed gives the same marks.
+    // The same session with every number of the rendering changed gives the same markers.
     let told = |change: &dyn Fn(&mut Tick)| {
         let mut follower = Follower::new(CONTACT_N, WORDS);
         let mut marks = Vec::new();
@@ -122,7 +122,7 @@ fn a_library_that_is_missing_or_none_is_told_with_its_cure_in_one_line() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// The peer that reads the stream is `tests/peers/peer_lsl.py`; this is the library alone.
+/// The peer that reads the stream is `tests/peers/peer_lsl.py`; this tests only the library.
 #[test]
 fn the_installed_library_takes_the_marks_of_a_trial() {
     let Some(path) = std::env::var_os("NIMA_LIBLSL") else { return };

@@ -19,14 +19,14 @@ fn every_degenerate_set_is_refused_with_its_cause() {
         let few = cause(&noisy(&mut rng, &lens, &good[..5], 0.1));
         assert_eq!(few, Cause::TooFew { used: 5, needed: 8 });
         assert_eq!(cause(&[]), Cause::TooFew { used: 0, needed: 8 });
-        // The same pose again and again.
+        // The same pose repeatedly.
         let same = cause(&noisy(&mut rng, &lens, &vec![good[1]; 14], 0.1));
         assert_eq!(same, Cause::Repeated { repeated: 13, of: 14 });
         // Blurred.
         let mut blurred = noisy(&mut rng, &lens, &good, 0.1);
         blurred.iter_mut().skip(3).for_each(|view| view.blur_px = 4.0);
         assert_eq!(cause(&blurred), Cause::Blurred { blurred: 9, of: 12 });
-        // Moved, but never tilted; and tilted, but always the same way.
+        // Moved, but never tilted; and tilted, but always in the same way.
         for tilt in [[0.0, 0.0, 0.0], [22.0, 10.0, 0.0]] {
             let shares = (0..12).map(|k| [f64::from(k % 4) * 0.36 - 0.54, f64::from(k / 4) * 0.45 - 0.45]);
             let poses: Vec<_> = shares
@@ -42,7 +42,7 @@ fn every_degenerate_set_is_refused_with_its_cause() {
         let poses: Vec<_> = tilts.map(|(x, tilt)| pose(&lens, &board, [x, 0.3 * x], 0.1, [0.0, tilt, 0.0])).collect();
         let one_way = cause(&noisy(&mut rng, &lens, &poses, 0.1));
         assert!(matches!(one_way, Cause::OneWay { .. }), "{one_way:?}");
-        // In the middle only.
+        // Only in the middle.
         let middle = (0..14).map(|k| {
             let turn = f64::from(k) * 1.9;
             pose(
@@ -55,7 +55,7 @@ fn every_degenerate_set_is_refused_with_its_cause() {
         });
         let covered = cause(&noisy(&mut rng, &lens, &middle.collect::<Vec<_>>(), 0.1));
         assert!(matches!(covered, Cause::Coverage { .. }), "{covered:?}");
-        // Corners that are somewhere else.
+        // Corners in wrong positions.
         let poor = cause(&noisy(&mut rng, &lens, &good, 2.0));
         assert!(matches!(poor, Cause::HeldOut { .. }), "{poor:?}");
     }
@@ -95,7 +95,7 @@ fn who_follows_the_session_has_a_good_set() {
                 let tilts = match way {
                     crate::Way::Left => [0.0, -28.0],
                     crate::Way::Right => [0.0, 28.0],
-                    // A turn about x raises the lower side's distance.
+                    // A rotation about x moves the lower side away.
                     crate::Way::Up => [28.0, 0.0],
                     crate::Way::Down => [-28.0, 0.0],
                 };
@@ -112,7 +112,7 @@ fn who_follows_the_session_has_a_good_set() {
             continue;
         }
         let sight = noisy(&mut rng, &lens, &[pose], 0.05).remove(0);
-        assert_eq!(session.offer(sight.clone()), Offer::Moving, "one picture does not tell that it is held still");
+        assert_eq!(session.offer(sight.clone()), Offer::Moving, "one image cannot show that it is held still");
         let offer = session.offer(sight.clone());
         assert!(matches!(offer, Offer::Taken | Offer::TakenHere), "{offer:?}");
         assert_eq!(session.offer(sight), Offer::TakenHere);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Unseen;
 
-/// Root mean square and largest distance of the corners found from the true ones, px.
+/// Root mean square and maximum distance of the detected corners from the true ones, px.
 fn errors_px(sight: &Sight, real: &[Vector2<f64>]) -> [f64; 2] {
     let squares: Vec<f64> = sight.corners_px.iter().zip(real).map(|(a, b)| (a - b).norm_squared()).collect();
     let mean = squares.iter().sum::<f64>() / squares.len() as f64;
@@ -28,7 +28,7 @@ fn corners_are_found_through_any_lens_blur_noise_and_light() {
                 sensor.blur_px, sensor.noise, sight.blur_px
             );
             assert!(rms_px < most_px && max_px < 6.0 * most_px, "k1 {k1}: {rms_px} {max_px}");
-            // Some of it is the pixel itself.
+            // A part of it is the pixel itself.
             assert!(
                 (sight.blur_px - f64::from(sensor.blur_px)).abs() < 0.75 + 0.1 * f64::from(sensor.blur_px),
                 "{}",
@@ -69,7 +69,7 @@ fn what_is_not_the_whole_board_is_refused_and_told() {
     picture = Grey::new(SIZE_PX, values.collect()).unwrap();
     let told = find(&picture, &board).unwrap_err();
     assert!(matches!(told, Unseen::Part { seen: 30..=53, of: 54 }), "{told:?}");
-    // Half outside of the picture.
+    // Half outside the image.
     let beside = pose(&lens, &board, [0.95, 0.0], 0.1, [0.0, 0.0, 0.0]);
     let told = find(&Sensor::USUAL.picture(&mut rng, &portrait, &board, &beside), &board).unwrap_err();
     assert!(matches!(told, Unseen::Part { seen: 10..=45, of: 54 }), "{told:?}");
@@ -78,7 +78,7 @@ fn what_is_not_the_whole_board_is_refused_and_told() {
     let there = pose(&lens, &other, [0.0, 0.0], 0.12, [12.0, 8.0, 5.0]);
     let told = find(&Sensor::USUAL.picture(&mut rng, &portrait, &other, &there), &board).unwrap_err();
     assert_eq!(told, Unseen::Other([10, 7]));
-    // No board: noise, nothing, and a picture of a few pixels.
+    // No board: noise, a blank image, and an image of a few pixels.
     let noise = (0..SIZE_PX[0] * SIZE_PX[1]).map(|_| (90.0 + 25.0 * normal(&mut rng)) as f32).collect();
     assert!(matches!(
         find(&Grey::new(SIZE_PX, noise).unwrap(), &board),

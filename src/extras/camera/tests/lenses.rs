@@ -62,11 +62,11 @@ fn the_standard_deviations_are_those_of_many_calibrations() {
         }
     }
     let ratio = f64::sqrt(scaled / count);
-    assert!((0.7..1.4).contains(&ratio), "errors are {ratio} times what is told");
+    assert!((0.7..1.4).contains(&ratio), "errors are {ratio} times the reported ones");
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: some minutes; `./dev figures` runs it"]
+#[ignore = "figures of docs/results/endoscope.md: some minutes; `./dev figures` runs it"]
 fn figures_of_calibrations_from_rendered_boards() {
     let mut rng = Rng::with_seed(14);
     let mut errors = Vec::new();
@@ -81,7 +81,7 @@ fn figures_of_calibrations_from_rendered_boards() {
         let sensor =
             Sensor { blur_px: 0.5 + 1.5 * rng.f32(), noise: 1.0 + 5.0 * rng.f64(), edge: 0.3 + 0.6 * rng.f64() };
         let portrait = Portrait::new(&real);
-        // A view in which the board is not found is passed, as the wizard passes it.
+        // A view in which the board is not found is skipped, like in the wizard.
         let find_in = |pose| find(&sensor.picture(&mut rng, &portrait, &board(), pose), &board()).ok();
         let views: Vec<_> = usual(&mut Rng::with_seed(set), &real, &board(), 16).iter().filter_map(find_in).collect();
         seen += views.len();

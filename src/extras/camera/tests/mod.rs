@@ -1,4 +1,4 @@
-//! Against rendered boards, whose lens and places are known.
+//! Comparison with rendered boards, whose lens and poses are known.
 
 mod degenerate;
 mod detection;
@@ -26,7 +26,8 @@ fn normal(rng: &mut Rng) -> f64 {
     (-2.0 * (1.0 - rng.f64()).ln()).sqrt() * (std::f64::consts::TAU * rng.f64()).cos()
 }
 
-/// A board whose middle is seen at a share of the picture (-1 to 1 each), tilted about x and y and turned about z, degrees.
+/// A board whose middle is seen at this position in the image (-1 to 1 each), tilted about x and y and rotated about z,
+/// degrees.
 fn pose(lens: &Lens, board: &Board, [x, y]: [f64; 2], far_m: f64, [tilt_x, tilt_y, turn]: [f64; 3]) -> Isometry3<f64> {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let at_px = Vector2::new(0.5 * width * (1.0 + x), 0.5 * height * (1.0 + y));
@@ -36,7 +37,8 @@ fn pose(lens: &Lens, board: &Board, [x, y]: [f64; 2], far_m: f64, [tilt_x, tilt_
     Isometry3::from_parts(Translation3::from(middle_m - rotation * board.middle_m()), rotation)
 }
 
-/// Poses as a person takes them: over the whole picture, some of them tilted each way. Every corner is within the picture.
+/// Typical poses of a person: over the whole image, some of them tilted in each direction. Every corner is within the
+/// image.
 fn usual(rng: &mut Rng, lens: &Lens, board: &Board, count: usize) -> Vec<Isometry3<f64>> {
     let mut poses = Vec::new();
     let mut spread = |k: usize| {
@@ -76,11 +78,11 @@ fn corners_px(lens: &Lens, board: &Board, pose: &Isometry3<f64>) -> Option<Vec<V
     board.places_m().iter().map(|place_m| lens.project(&(pose.rotation * place_m + pose.translation.vector))).collect()
 }
 
-/// All corners are in the picture, with some room for a window around them.
+/// Whether all corners are in the image, with some margin for a window around them.
 fn is_whole(lens: &Lens, board: &Board, pose: &Isometry3<f64>) -> bool {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let inside = |at: &Vector2<f64>| (14.0..width - 14.0).contains(&at.x) && (14.0..height - 14.0).contains(&at.y);
-    // Where a barrel turns back on itself squares are squeezed to nothing; real lenses have further terms there.
+    // Where barrel distortion folds back, squares are compressed to nothing; real lenses have further terms there.
     let most = 0.8 * lens.bend.tangent_most();
     let places_m = board.places_m();
     let mut before = places_m.iter().map(|place_m| pose.rotation * place_m + pose.translation.vector);
@@ -88,12 +90,12 @@ fn is_whole(lens: &Lens, board: &Board, pose: &Isometry3<f64>) -> bool {
     is_seen && corners_px(lens, board, pose).is_some_and(|all| all.iter().all(inside))
 }
 
-/// What a camera makes of what a lens shows.
+/// Imperfections of a camera.
 #[derive(Clone, Copy)]
 struct Sensor {
     blur_px: f32,
     noise: f64,
-    /// Brightness at the edge of the picture, of that in the middle.
+    /// Brightness at the edge of the image, relative to the middle.
     edge: f64,
 }
 
@@ -114,7 +116,7 @@ impl Sensor {
     }
 }
 
-/// Views found in rendered pictures.
+/// Views found in rendered images.
 fn rendered(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], sensor: Sensor) -> Vec<Sight> {
     let board = board();
     let portrait = Portrait::new(lens);
@@ -122,7 +124,7 @@ fn rendered(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], sensor: Sensor
     views.enumerate().map(|(at, view)| view.unwrap_or_else(|why| panic!("view {at}: {why:?}"))).collect()
 }
 
-/// The same without pictures: true corners with noise.
+/// The same without images: true corners with noise.
 fn noisy(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], noise_px: f64) -> Vec<Sight> {
     let light = Grey::new(SIZE_PX, vec![200.0; SIZE_PX[0] * SIZE_PX[1]]).unwrap();
     let view = |pose| {
@@ -136,13 +138,13 @@ fn noisy(rng: &mut Rng, lens: &Lens, poses: &[Isometry3<f64>], noise_px: f64) ->
     poses.iter().map(view).collect()
 }
 
-/// Largest error of focal lengths and centre, of the focal length.
+/// Maximum error of focal lengths and centre, relative to the focal length.
 fn error(found: &Lens, real: &Lens) -> f64 {
     let focal = (found.focal_px - real.focal_px).abs().max();
     focal.max((found.centre_px - real.centre_px).abs().max()) / real.focal_px.x
 }
 
-/// Largest distance in the picture between the places of the same direction, px.
+/// Maximum distance in the image between the positions of the same direction, px.
 fn bend_px(found: &Lens, real: &Lens) -> f64 {
     let at = |column: usize, row: usize| Vector2::new(column as f64 * 128.0, row as f64 * 120.0);
     let places = (0..=10).flat_map(|column| (0..=6).map(move |row| at(column, row)));

@@ -37,7 +37,7 @@ fn the_camera_is_found_from_touched_corners() {
         let placed = placed(&mut rng, &touched).unwrap();
         let (lens, camera_from_board, world_from_camera) = scene();
         assert_eq!(placed.verdict(), Verdict::Accepted, "{placed:?}");
-        // What matters: where a tip on the board and 1 cm before it is drawn.
+        // The relevant result: where a tip on the board, and 1 cm in front of it, is drawn.
         let camera = nima_endoscope::Camera { lens, world_from_camera: placed.world_from_camera };
         for z in [0.0, -0.01] {
             let tip_m = world_from_camera * camera_from_board * Point3::new(0.02, 0.012, z);
@@ -56,7 +56,7 @@ fn touches_that_cannot_place_a_camera_are_refused() {
     assert_eq!(placed(&mut rng, &few).unwrap_err(), PlaceError::TooFew { touched: 3, needed: 4 });
     let line = touches(&mut rng, &[[0, 2], [2, 2], [5, 2], [8, 2]], 0.0);
     assert_eq!(placed(&mut rng, &line).unwrap_err(), PlaceError::OneLine);
-    // The next corner was touched instead.
+    // The next corner was touched by mistake.
     let mut wrong = touches(&mut rng, &OUTER, 0.0);
     wrong[2].corner = [7, 5];
     let lack = placed(&mut rng, &wrong).unwrap().lack;

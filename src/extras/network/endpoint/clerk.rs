@@ -1,7 +1,7 @@
-//! A thread that makes sessions, so that the loop's does not have to: key agreements and memory take time.
+//! A thread that performs handshakes, because key agreements and allocations take too long for the loop's thread.
 //!
-//! The loop hands it the datagrams of handshakes and gets sessions; those that have ended go back to it to be freed. Neither side
-//! ever waits for the other.
+//! The loop passes it the datagrams of handshakes and receives sessions; ended sessions go back to the thread to be
+//! freed. Neither side ever waits for the other.
 
 use std::{
     io,
@@ -25,17 +25,16 @@ use crate::{
     worker::Worker,
 };
 
-/// Datagrams that wait for the thread; what comes on top is dropped.
+/// Maximum number of datagrams waiting for the thread; more are dropped.
 const LETTERS: usize = 64;
-/// Sessions that wait for the loop, and that wait to be freed.
+/// Maximum number of sessions waiting for the loop, and waiting to be freed.
 const SESSIONS: usize = 16;
-/// How often it looks for letters: while something happens, and at rest.
+/// Polling interval while active, and while idle.
 const BUSY: Duration = Duration::from_millis(1);
 const REST: Duration = Duration::from_millis(10);
-/// So long it stays busy.
+/// How long it stays active.
 const BUSY_S: f64 = 1.0;
 
-/// A datagram of a handshake.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Letter {
     from: SocketAddr,
@@ -43,19 +42,19 @@ pub(super) struct Letter {
     bytes: [u8; HANDSHAKE_MAX],
 }
 
-/// What the thread tells the loop.
+/// Notifications from the thread to the loop.
 #[derive(Debug)]
 pub(super) enum News {
     Opened(Box<Session>),
     Refused(Refusal),
 }
 
-/// Counters and switches that both look at.
+/// Counters and switches used by both sides.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    /// A console wants a session.
+    /// Whether a session is requested by the console.
     pub(super) is_wanted: AtomicBool,
-    /// A follower admits no more consoles.
+    /// Whether a follower admits no more consoles.
     pub(super) is_full: AtomicBool,
     pub(super) malformed: AtomicU64,
     pub(super) foreign_version: AtomicU64,
@@ -103,7 +102,7 @@ impl Clerk {
         Ok(Self { letters, news, ended, shared, _thread: thread })
     }
 
-    /// Hands a datagram over; `false` if too many wait.
+    /// Passes on a datagram; `false` if too many wait.
     pub(super) fn give(&self, datagram: &[u8], from: SocketAddr) -> bool {
         let mut letter = Letter { from, len: datagram.len(), bytes: [0; HANDSHAKE_MAX] };
         let Some(room) = letter.bytes.get_mut(..letter.len) else { return false };
@@ -115,7 +114,7 @@ impl Clerk {
         self.news.try_recv().ok()
     }
 
-    /// Takes a session that has ended, to free it; gives it back if too many wait.
+    /// Takes a session that has ended, to free it; returns it if too many wait.
     pub(super) fn free(&self, session: Box<Session>) -> Option<Box<Session>> {
         self.ended.try_send(session).err().map(crossbeam_channel::TrySendError::into_inner)
     }
@@ -130,7 +129,7 @@ struct Desk {
     outbox: Sender<News>,
     ended: Receiver<Box<Session>>,
     shared: Arc<Shared>,
-    /// When the last letter came.
+    /// When the last datagram arrived.
     busy_s: f64,
     out: [u8; HANDSHAKE_MAX],
 }
@@ -171,7 +170,7 @@ impl Desk {
         };
         let Heard { answer, trouble, agreed } = heard;
         if let Some(agreed) = agreed {
-            // The session is handed over before the other side learns of it.
+            // The session is passed on before the other side learns of it.
             let session = Box::new(Session::new(*agreed, letter.from, &self.settings));
             self.outbox.try_send(News::Opened(session)).ok();
         }

@@ -1,4 +1,4 @@
-//! What an endpoint is made with, and what it tells.
+//! Settings of an endpoint, and its status.
 
 use std::{io, net::SocketAddr};
 
@@ -8,42 +8,38 @@ use crate::{
     stream::StreamSettings,
 };
 
-/// Which end it is.
+/// The end of the link.
 #[derive(Clone, Debug)]
 pub enum Role {
     /// The end with the arm.
     Follower {
-        /// Where it listens; `None` for [`PORT`](super::PORT) of loopback, so that nobody outside can reach it.
+        /// Its address; by default [`PORT`](super::PORT) of loopback, which other machines cannot reach.
         at: Option<SocketAddr>,
-        /// The consoles that it admits; one that is paired later is admitted when the endpoint is opened anew.
+        /// The consoles that it admits; one that is paired later is admitted when the endpoint is reopened.
         consoles: Peers,
     },
     /// The end with the handle.
     Console {
-        /// Where the follower listens.
+        /// The follower's address.
         follower: SocketAddr,
-        /// The follower's key.
         key: PublicKey,
     },
 }
 
-/// What an endpoint is made with.
+/// Settings of an endpoint.
 #[derive(Clone, Debug)]
 pub struct Config {
-    /// Which end.
     pub role: Role,
-    /// The key of this machine.
     pub keys: Keys,
-    /// The stream.
     pub stream: StreamSettings,
-    /// Without a datagram for this long the link is silent, s.
+    /// Time without a datagram after which the link is silent, s.
     pub silent_after_s: f64,
-    /// A follower forgets a console that is silent for this long, s; it is then free for others.
+    /// A follower removes a console that is silent for this long, s, and is then free for others.
     pub forget_after_s: f64,
 }
 
 impl Config {
-    /// With the usual settings.
+    /// Makes the default settings.
     pub fn new(role: Role, keys: Keys) -> Self {
         Self { role, keys, stream: StreamSettings::default(), silent_after_s: 0.1, forget_after_s: 5.0 }
     }
@@ -53,72 +49,63 @@ impl Config {
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The address cannot be used.
-    #[error(
-        "cannot use the UDP address {address}: {source}; is another nima running, or is it another machine's address?"
-    )]
-    Address {
-        /// The address.
-        address: SocketAddr,
-        /// Why.
-        source: io::Error,
-    },
-    /// No thread can be started.
-    #[error("cannot start a thread: {0}")]
+    #[error("cannot use the UDP address {address}: {source}; end the other nima, or use an address of this machine")]
+    Address { address: SocketAddr, source: io::Error },
+    #[error("cannot start a thread: {0}; end other programs, then try again")]
     Thread(io::Error),
-    /// Keys.
     #[error(transparent)]
     Keys(#[from] KeyError),
 }
 
-/// What a link is now.
+/// Status of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkState {
-    /// Nobody has been there yet.
+    /// The other side has not connected yet.
     Waiting,
     /// Payloads pass.
     Open,
-    /// They do not, or not as they should.
+    /// Payloads do not pass, or only imperfectly.
     Down(Cause),
 }
 
-/// What came of sending a payload.
+/// Result of sending a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is under way.
+    /// It has been sent.
     Sent,
-    /// It goes with the next datagram: the rate's limit leaves no room.
+    /// It goes with the next datagram: the rate limit leaves no room.
     Held,
-    /// There is nobody to send it to, or another console holds the follower.
+    /// There is no other side, or another console has control of the follower.
     NotOpen,
-    /// It is longer than the settings allow.
+    /// It exceeds the maximum of the settings.
     TooLong,
 }
 
-/// A console's part in who holds the follower.
+/// A console's share in the control of the follower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
     /// Not connected.
     None,
-    /// It holds the follower.
+    /// It has control of the follower.
     Holds,
-    /// It holds the follower, and another console asks for control: [`Endpoint::answer`](super::Endpoint::answer).
+    /// It has control of the follower, and another console requests it: [`Endpoint::answer`](super::Endpoint::answer).
     HoldsAsked,
-    /// Another console, or nobody, holds it.
+    /// Another console, or none, has control.
     Waits,
     /// It waits for an answer.
     Asks,
-    /// The holder has refused. It may ask again.
+    /// The controlling console has refused. It may ask again.
     Denied,
 }
 
-/// What a console wants.
+/// A console's request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wish {
-    /// Nothing.
+    /// None.
     None,
     /// Control of the follower.
     Asks,
-    /// The same, while the follower still tells of its denial before.
+    /// Control of the follower, while the follower still reports the earlier denial.
     AsksAgain,
     /// It was denied.
     Denied,

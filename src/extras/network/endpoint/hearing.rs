@@ -1,4 +1,4 @@
-//! What an endpoint does with a datagram that has arrived.
+//! Processing of received datagrams at an endpoint.
 
 use super::{Endpoint, RECEIVE_MAX, config::Wish, session::Session};
 use crate::{
@@ -81,7 +81,7 @@ impl Endpoint {
         }
     }
 
-    /// What a console does with the byte of its follower.
+    /// Processes the follower's byte at a console.
     fn heard_follower(&mut self, at: usize) {
         let Some(said) = self.sessions[at].as_ref().map(|session| session.from_follower) else { return };
         self.heard_s = Some(self.now_s);

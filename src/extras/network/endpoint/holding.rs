@@ -1,17 +1,17 @@
-//! Who holds a follower: one console at a time, and another only with its consent.
+//! Control of a follower: one console at a time, and another only with its consent.
 
 use super::{Endpoint, SESSIONS};
 use crate::control::{FromFollower, Standing};
 
-/// A console asks the holder for control.
+/// A console requests control from the controlling one.
 #[derive(Clone, Copy, Debug)]
 struct Question {
     by: usize,
-    /// 1 to 3, so that an answer to the question before is not taken for one to this.
+    /// 1 to 3, so that an answer to the previous request is not mistaken for one to this request.
     number: u8,
 }
 
-/// The open question.
+/// The open request.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Holding {
     question: Option<Question>,
@@ -19,14 +19,14 @@ pub(super) struct Holding {
 }
 
 impl Holding {
-    /// The session at this place has ended.
+    /// Called when the session at this index has ended.
     pub(super) fn forget(&mut self, at: usize) {
         self.question = self.question.filter(|question| question.by != at);
     }
 }
 
 impl Endpoint {
-    /// What this follower tells the console at this place.
+    /// Returns the follower's byte for the console at this index.
     pub(super) fn told_to(&self, at: usize) -> FromFollower {
         let standing = match self.active {
             Some(holder) if holder == at => Standing::Holds,
@@ -42,7 +42,7 @@ impl Endpoint {
         }
     }
 
-    /// What a follower does with a datagram of the console at this place.
+    /// Processes a datagram of the console at this index at a follower.
     pub(super) fn heard_console(&mut self, at: usize) {
         let Some(session) = self.sessions[at].as_mut() else { return };
         let is_new = !session.is_confirmed;
@@ -65,7 +65,7 @@ impl Endpoint {
         }
     }
 
-    /// A console has confirmed its session. It takes the place of an older session of the same console.
+    /// Called when a console has confirmed its session. It replaces an older session of the same console.
     fn welcome(&mut self, at: usize, peer: &crate::keys::PublicKey) {
         let mut holds = self.active.is_none();
         for old in 0..SESSIONS {
@@ -91,7 +91,7 @@ impl Endpoint {
         }
     }
 
-    /// Passes questions on and obeys answers.
+    /// Forwards requests and executes answers.
     pub(super) fn hand_over(&mut self) {
         let asks = |this: &Self, at: usize| {
             this.active != Some(at) && this.sessions[at].as_ref().is_some_and(|s| s.is_confirmed && s.from_console.asks)

@@ -1,4 +1,4 @@
-//! How an endpoint looks after its sessions: it takes new ones over, keeps them alive, and ends them.
+//! Maintenance of an endpoint's sessions: adopts new ones, keeps them alive, and ends them.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -22,13 +22,13 @@ impl Endpoint {
         }
     }
 
-    /// A session of a handshake that has ended. A console uses it from now on, a follower when it is confirmed.
+    /// Adopts a session after its handshake. A console uses it from now on, a follower once it is confirmed.
     fn opened(&mut self, mut session: Box<Session>) {
         session.opened_s = self.now_s;
         session.heard_s = self.now_s;
         if !self.is_follower {
             if self.session().is_some_and(|old| self.now_s - old.heard_s < SEEK_AFTER_S) {
-                // The old one has come back meanwhile, and goes on where it was.
+                // The old session has recovered meanwhile and continues.
                 drop(self.clerk.free(session));
                 return;
             }
@@ -54,7 +54,7 @@ impl Endpoint {
                     }
                 }
             }
-            // It is freed by the thread; if that is behind, here: nothing is lost but time.
+            // The thread frees it; if the thread is behind, it is freed here, which only costs time.
             None => drop(self.clerk.free(session)),
         }
     }
@@ -96,7 +96,7 @@ impl Endpoint {
         for at in 0..SESSIONS {
             let Some(session) = self.sessions[at].as_ref() else { continue };
             let pause_s = if self.active == Some(at) && self.carries() { ALIVE_S } else { ALIVE_WAITING_S };
-            // A follower says nothing in a session that its console has not confirmed.
+            // A follower sends nothing in a session that its console has not confirmed.
             if (session.is_confirmed || !self.is_follower) && self.now_s - session.sent_s >= pause_s {
                 self.send_to(at, self.now_s, None);
             }

@@ -1,11 +1,11 @@
 //! One end of a link: a console or a follower, on a real socket.
 //!
-//! The thread of a control loop drives it: [`Endpoint::poll`] once per tick, then [`Endpoint::send`]. Once a session is open, neither
-//! allocates, locks, logs, waits, panics or runs an unbounded loop. What takes time, the key agreements, is done by a thread of its own.
-//! Times are handed in: any clock of the caller's that does not stand still, s.
+//! The thread of a control loop drives it: [`Endpoint::poll`] once per tick, then [`Endpoint::send`]. Once a session is
+//! open, neither allocates, locks, logs, waits, panics or runs an unbounded loop. Slow work, the key agreements, is
+//! done by a separate thread. Times are passed in as arguments: any running clock of the caller's, s.
 //!
-//! A follower listens on loopback unless an address is given, and admits the machines that it is paired with. One console holds it; others may
-//! be connected and ask the holder for control.
+//! A follower listens on loopback unless an address is given, and admits its paired machines. One console has control;
+//! others may be connected and request it.
 
 mod clerk;
 mod config;
@@ -39,29 +39,28 @@ use crate::{
     wire::DATAGRAM_MAX,
 };
 
-/// Where a follower listens unless told otherwise.
+/// The follower's default port.
 pub const PORT: u16 = 47_150;
-/// Consoles that are connected to a follower at once.
+/// Maximum number of consoles connected to a follower.
 pub const CONSOLES_MAX: usize = 6;
-/// Sessions at once: those, and some whose handshake has only just ended.
+/// Maximum number of sessions: one per console, and some whose handshake has just ended.
 const SESSIONS: usize = CONSOLES_MAX + 2;
-/// Datagrams that are taken from the socket in one call.
+/// Maximum number of datagrams read from the socket in one call.
 const RECEIVE_MAX: usize = 128;
-/// Without payloads, datagrams are sent this often, s, by the holder and to it.
+/// Interval of datagrams without payloads, s, from and to the controlling console.
 pub const ALIVE_S: f64 = 0.02;
-/// The same for those who wait.
+/// The same for waiting consoles, s.
 const ALIVE_WAITING_S: f64 = 0.05;
-/// A session that the other side has not confirmed for this long is none, s.
+/// A session that the other side does not confirm within this time is dropped, s.
 const CONFIRM_S: f64 = 3.0;
-/// A console that has heard nothing for this long makes a new session beside the old one, s.
+/// A console that has received nothing for this long starts a new session in addition to the old one, s.
 const SEEK_AFTER_S: f64 = 0.5;
-/// A jump of a clock and a refusal are told for this long, s.
+/// A clock jump and a refusal are reported for this long, s.
 const TOLD_S: f64 = 1.0;
 const REFUSED_TOLD_S: f64 = 5.0;
-/// How often a goodbye is said: datagrams may be lost.
+/// Number of goodbyes sent, because datagrams may be lost.
 const GOODBYES: usize = 3;
 
-/// One end of a link.
 #[derive(Debug)]
 pub struct Endpoint {
     is_follower: bool,
@@ -70,18 +69,18 @@ pub struct Endpoint {
     socket: Socket,
     clerk: Clerk,
     sessions: [Option<Box<Session>>; SESSIONS],
-    /// The session whose payloads count: a follower's holder, a console's follower.
+    /// The session whose payloads count: at a follower, the controlling console's; at a console, the follower's.
     active: Option<usize>,
-    /// A follower's.
+    /// For a follower.
     holding: Holding,
-    /// A console's: whether it asks for control, and what it answers to the question with a number.
+    /// For a console: its request for control, and its answer to the request with a number.
     wish: Wish,
     answer: Option<(u8, bool)>,
     dropped: Dropped,
     /// The caller's time of the last poll, s, and the system's at that moment.
     now_s: f64,
     looked: Duration,
-    /// When the active session was last heard, s; also after it has ended.
+    /// Last reception in the active session, s; kept after it has ended.
     heard_s: Option<f64>,
     is_closed: bool,
     jumped: Option<(f64, f64)>,
@@ -132,15 +131,16 @@ impl Endpoint {
         })
     }
 
-    /// The address of its socket.
+    /// Returns the address of its socket.
     ///
     /// # Errors
-    /// What the system says.
+    /// I/O errors.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.socket.address()
     }
 
-    /// Takes what has arrived and sends what keeps the session alive; once per tick. Gives the payloads that are due at `now_s`.
+    /// Processes received datagrams and keeps the session alive; call it once per tick. Returns the payloads that are
+    /// due at `now_s`.
     pub fn poll(&mut self, now_s: f64) -> Received<'_> {
         self.now_s = now_s;
         self.looked = system_time();
@@ -161,8 +161,8 @@ impl Endpoint {
         Received { session: None, now_s }
     }
 
-    /// Sends a payload to the other side. `now_s` is the time of sending, s: the time that the caller's work has taken since
-    /// [`Endpoint::poll`] would otherwise count as the network's delay.
+    /// Sends a payload to the other side. `now_s` is the time of sending, s: otherwise the time of the caller's work
+    /// since [`Endpoint::poll`] would count as network delay.
     pub fn send(&mut self, now_s: f64, payload: &[u8]) -> Outcome {
         match self.active {
             Some(at) if self.carries() => match self.send_to(at, now_s, Some(payload)) {
@@ -174,7 +174,7 @@ impl Endpoint {
         }
     }
 
-    /// What the link is, at the last poll.
+    /// Returns the status of the link at the last poll.
     pub fn state(&self) -> LinkState {
         let silent_s = self.heard_s.map(|heard_s| self.now_s - heard_s);
         let recent = |at_s: f64, told_s: f64| self.now_s - at_s <= told_s;
@@ -188,7 +188,7 @@ impl Endpoint {
         };
         let for_s = self.now_s - session.heard_s;
         if session.is_confirmed && for_s > self.silent_after_s {
-            // A follower that was started anew with other keys refuses while the old session is silent.
+            // A follower that was restarted with other keys refuses while the old session is silent.
             return match self.refused {
                 Some((at_s, refusal)) if recent(at_s, REFUSED_TOLD_S) => LinkState::Down(Cause::Refused(refusal)),
                 _ => LinkState::Down(Cause::Silent { for_s }),
@@ -203,7 +203,7 @@ impl Endpoint {
         }
     }
 
-    /// What the session whose payloads count has measured; all zero without one.
+    /// Returns the measurements of the session whose payloads count; all zero without one.
     pub fn figures(&self) -> Figures {
         self.session().map_or_else(Figures::default, |session| session.stream.figures(self.now_s))
     }
@@ -226,23 +226,24 @@ impl Endpoint {
         self.clerk.shared.sent.load(Relaxed)
     }
 
-    /// The key of the other side: the follower's, or that of the console that holds this follower.
+    /// Returns the other side's key: at a console, the follower's; at a follower, the controlling console's.
     pub fn peer(&self) -> Option<PublicKey> {
         self.session().map(|session| session.peer)
     }
 
-    /// Asks for control of the follower, until it is given or refused. Nobody has to consent if nobody holds it.
+    /// Requests control of the follower until it is granted or refused. No consent is needed while no console has
+    /// control.
     pub fn ask_for_control(&mut self) {
         let is_stale = self.session().is_some_and(|session| session.from_follower.is_denied);
         self.wish = if is_stale { Wish::AsksAgain } else { Wish::Asks };
     }
 
-    /// Does not ask any more.
+    /// Withdraws the request.
     pub const fn withdraw(&mut self) {
         self.wish = Wish::None;
     }
 
-    /// Answers the console that asks for control ([`Control::HoldsAsked`]); with `true` control goes to it.
+    /// Answers the console that requests control ([`Control::HoldsAsked`]); `true` transfers control to it.
     pub fn answer(&mut self, consents: bool) {
         let asked = self.session().map_or(0, |session| session.from_follower.asked);
         if asked != 0 {
@@ -250,7 +251,7 @@ impl Endpoint {
         }
     }
 
-    /// A console's part in who holds the follower; [`Control::None`] for a follower.
+    /// Returns a console's status of control; [`Control::None`] for a follower.
     pub fn control(&self) -> Control {
         let Some(session) = self.session().filter(|_| !self.is_follower) else { return Control::None };
         match session.from_follower.standing {
@@ -265,7 +266,7 @@ impl Endpoint {
         }
     }
 
-    /// Tells the other side that the session ends. Dropping the endpoint does it too.
+    /// Ends the session and informs the other side. Dropping the endpoint does the same.
     pub fn close(&mut self) {
         for at in 0..SESSIONS {
             if self.sessions[at].is_some() {
@@ -282,7 +283,7 @@ impl Endpoint {
         self.sessions[self.active?].as_deref()
     }
 
-    /// What this end is to the active session.
+    /// Returns this end's status in the active session.
     fn standing(&self) -> Standing {
         match self.session() {
             Some(_) if self.is_follower => Standing::Holds,
@@ -302,7 +303,8 @@ impl Drop for Endpoint {
     }
 }
 
-/// The address that a socket for datagrams to this one is bound to: what is on this machine is not reached through the network.
+/// Returns the address to which a socket for datagrams to this address is bound: a local address is not reached through
+/// the network.
 pub(crate) fn towards(to: &SocketAddr) -> SocketAddr {
     match to {
         SocketAddr::V4(v4) if v4.ip().is_loopback() => (Ipv4Addr::LOCALHOST, 0).into(),
@@ -320,7 +322,7 @@ pub struct Received<'a> {
 }
 
 impl Received<'_> {
-    /// The next, in order; `None` when all that are due have been taken.
+    /// Returns the next in order; `None` when all due payloads have been taken.
     pub fn next_due(&mut self) -> Option<Payload<'_>> {
         self.session.as_mut()?.stream.take(self.now_s)
     }

@@ -1,4 +1,4 @@
-//! One session at an endpoint: its stream, its other side, and what that side last said.
+//! One session at an endpoint: its stream, its other side, and the last state received from it.
 
 use std::net::SocketAddr;
 
@@ -9,27 +9,26 @@ use crate::{
     stream::{Stream, StreamSettings},
 };
 
-/// A session.
 #[derive(Debug)]
 pub(super) struct Session {
     pub(super) stream: Stream,
     pub(super) peer: PublicKey,
-    /// Where its datagrams go: where the newest authentic one came from.
+    /// Destination of its datagrams: the origin of the newest authentic one.
     pub(super) at: SocketAddr,
     /// Its number here.
     pub(super) ours: u32,
-    /// When it was taken over by the loop, s.
+    /// When the loop adopted it, s.
     pub(super) opened_s: f64,
-    /// When the newest authentic datagram came, s.
+    /// Arrival of the newest authentic datagram, s.
     pub(super) heard_s: f64,
     /// When the last datagram was sent, s.
     pub(super) sent_s: f64,
-    /// An authentic datagram has come: the other side has the keys too.
+    /// Whether an authentic datagram has arrived: the other side has the keys too.
     pub(super) is_confirmed: bool,
-    /// The other side's byte of control; which one, the role says.
+    /// The other side's control byte; the role determines which one.
     pub(super) from_console: FromConsole,
     pub(super) from_follower: FromFollower,
-    /// The holder has refused its question.
+    /// Whether the controlling console has refused its request.
     pub(super) is_denied: bool,
 }
 

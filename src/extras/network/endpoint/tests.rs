@@ -31,13 +31,13 @@ fn console(keys: &Keys, key: PublicKey, follower: SocketAddr) -> Endpoint {
     Endpoint::open(Config::new(Role::Console { follower, key }, keys.clone())).unwrap()
 }
 
-/// An endpoint and what it got.
+/// An endpoint and its received payloads.
 struct End {
     endpoint: Endpoint,
     got: Vec<u64>,
     ages_s: Vec<f64>,
     sent: u64,
-    /// Added to the time that it is told, s.
+    /// Offset of its clock, s.
     ahead_s: f64,
 }
 
@@ -73,7 +73,7 @@ impl Time {
         self.begin.elapsed().as_secs_f64()
     }
 
-    /// Ticks until `done`, for five seconds at most; whether it was done, and after how long, s.
+    /// Runs ticks until `done`, for at most five seconds; returns whether it was done, and after how long, s.
     fn until(&self, ends: &mut [&mut End], done: impl Fn(&[&mut End]) -> bool) -> Option<f64> {
         let from_s = self.now_s();
         while self.now_s() - from_s < 5.0 {
@@ -102,7 +102,7 @@ fn keys() -> Keys {
     Keys::random().unwrap()
 }
 
-/// A follower and its console, open.
+/// A follower and its console, connected.
 fn pair() -> (Time, End, End, Keys, Keys) {
     let theirs = keys();
     let ours = keys();
@@ -156,12 +156,12 @@ fn who_closes_says_so() {
         let (time, mut far, near, theirs, ours) = pair();
         drop(near);
         let closed = |ends: &[&mut End]| ends[0].endpoint.state() == LinkState::Down(Cause::PeerClosed);
-        assert!(time.until(&mut [&mut far], closed).expect("it is told") < 0.1);
+        assert!(time.until(&mut [&mut far], closed).expect("it is reported") < 0.1);
         let address = far.endpoint.address().unwrap();
         let mut near = End::new(console(&ours, theirs.public(), address));
         time.until(&mut [&mut far, &mut near], are_open).expect("and it comes back");
         drop(far);
-        assert!(time.until(&mut [&mut near], closed).expect("it is told") < 0.1);
+        assert!(time.until(&mut [&mut near], closed).expect("it is reported") < 0.1);
     });
 }
 
@@ -189,10 +189,10 @@ fn a_side_that_was_started_anew_is_back_within_a_second() {
     judged(|| {
         let (time, mut far, mut near, theirs, ours) = pair();
         let address = far.endpoint.address().unwrap();
-        // A console that was killed says no goodbye.
+        // A killed console sends no goodbye.
         let mut anew = End::new(console(&ours, theirs.public(), address));
         let back_s = time.until(&mut [&mut far, &mut anew], are_open).expect("the same console");
-        println!("console started anew: open after {back_s:.3} s");
+        println!("console restarted: open after {back_s:.3} s");
         assert!(back_s < 0.5, "{back_s}");
         time.run(&mut [&mut far, &mut anew], 0.3);
         assert!(anew.got.len() > 50 && far.endpoint.peer() == Some(ours.public()));
@@ -200,7 +200,7 @@ fn a_side_that_was_started_anew_is_back_within_a_second() {
         drop(far);
         let mut far = End::new(follower(&theirs, &[&ours], address));
         let back_s = time.until(&mut [&mut far, &mut anew], are_open).expect("the same follower");
-        println!("follower started anew: open after {back_s:.2} s");
+        println!("follower restarted: open after {back_s:.2} s");
         assert!(back_s < 1.0, "{back_s}");
     });
 }
@@ -223,12 +223,12 @@ fn one_console_holds_and_another_gets_control_only_by_consent() {
             move |ends: &[&mut End]| [ends[1].endpoint.control(), ends[2].endpoint.control()] == control
         };
         let mut ends = [&mut far, &mut holder, &mut other];
-        time.until(&mut ends, all([Control::Holds, Control::Waits])).expect("the second is told");
+        time.until(&mut ends, all([Control::Holds, Control::Waits])).expect("the second is informed");
         assert_eq!(ends[2].endpoint.state(), LinkState::Down(Cause::HeldByAnother));
         assert_eq!(ends[2].endpoint.send(time.now_s(), b"?"), Outcome::NotOpen);
         for _ in 0..2 {
             ends[2].endpoint.ask_for_control();
-            time.until(&mut ends, all([Control::HoldsAsked, Control::Asks])).expect("the first is asked");
+            time.until(&mut ends, all([Control::HoldsAsked, Control::Asks])).expect("the first is asked for control");
             ends[1].endpoint.answer(false);
             time.until(&mut ends, all([Control::Holds, Control::Denied])).expect("it refuses");
         }
@@ -242,14 +242,14 @@ fn one_console_holds_and_another_gets_control_only_by_consent() {
         time.run(&mut ends, 0.4);
         assert!(ends[2].got.len() > before + 50, "payloads go to the new holder");
         assert!(ends[0].got.windows(2).filter(|pair| pair[1] < pair[0]).count() <= 1, "one change of streams");
-        // The holder goes: nobody takes over by himself.
+        // The controlling console leaves: no other takes control by itself.
         ends[2].endpoint.close();
         drop(other);
         let mut ends = [&mut far, &mut holder];
         let free = |ends: &[&mut End]| ends[1].endpoint.state() == LinkState::Down(Cause::NotAsked);
         time.until(&mut ends, free).expect("told that it is free");
         ends[1].endpoint.ask_for_control();
-        time.until(&mut ends, are_open).expect("nobody has to consent");
+        time.until(&mut ends, are_open).expect("no consent is needed");
     });
 }
 
@@ -322,7 +322,7 @@ fn a_flood_of_handshakes_and_noise_does_not_stop_the_stream() {
                         let mut datagram = [0; HELLO_LEN];
                         let kind = if rng.bool() { Kind::Hello } else { Kind::Initiation };
                         datagram[..wire::HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, rng.u64(..)));
-                        // Some as if they were of a session, and of these some of the one that is open.
+                        // Some look like datagrams of a session, and some of these like the open one.
                         if rng.u32(..4) == 0 {
                             let session = if rng.u32(..8) == 0 { number } else { rng.u32(..) };
                             datagram[..wire::OUTER_LEN].copy_from_slice(&wire::outer(session, rng.u64(..)));

@@ -17,11 +17,11 @@ use super::*;
 use crate::keys::{Keys, Peers};
 
 const TICK: Duration = Duration::from_millis(1);
-/// So long a host works, s; the cable is out for some time within.
+/// Running time of a host, s; the cable is unplugged for a part of it.
 const LENGTH_S: f64 = 4.0;
 const CUT_AFTER: Duration = Duration::from_millis(1800);
 const CUT_FOR: Duration = Duration::from_millis(700);
-/// Tells the process which host it is: the folder with its keys.
+/// Environment variable with the process's host: the folder with its keys.
 const FOLDER: &str = "NIMA_NETWORK_HOST";
 
 fn ip(arguments: &[&str]) -> bool {
@@ -53,7 +53,6 @@ impl Hosts {
         assert!(ip(&["-n", &self.names[1], "link", "set", "cable", state]));
     }
 
-    /// A process on one of the hosts.
     fn run(&self, host: usize, folder: &Path) -> Child {
         let program = std::env::current_exe().unwrap();
         let mut command = Command::new("ip");
@@ -71,7 +70,8 @@ impl Drop for Hosts {
     }
 }
 
-/// What the process on each host does: a thousand ticks per second; it tells each change of the state, and in the end what it measured.
+/// The process on each host: a thousand ticks per second; prints each change of the state, and its measurements at the
+/// end.
 #[test]
 #[ignore = "a part of the test with two hosts"]
 fn one_host() {
@@ -122,11 +122,12 @@ fn one_host() {
         share(0.5),
         share(0.99)
     );
-    // Both are there until both are done.
+    // Both stay until both are done.
     sleep(Duration::from_millis(300));
 }
 
-/// Payloads got, lost, datagrams dropped; play-out delay, median and 99th percentile of the age (ms); the states.
+/// Payloads received and lost, datagrams dropped; playout delay, median and 99th percentile of the age (ms); the
+/// states.
 fn told(child: Child) -> (Vec<f64>, String) {
     let output = child.wait_with_output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
@@ -165,7 +166,8 @@ fn two_hosts_exchange_payloads_and_see_when_the_cable_is_out() {
             );
             assert_eq!(states, "waiting open silent open");
             assert!(got > 1900.0 && dropped < 1.0, "{figures:?}");
-            // What was sent while the cable was out, and until the system had found the other host again: a second at most.
+            // Payloads sent while the cable was unplugged, and until the system had found the other host again: at most
+            // a second.
             assert!(lost > 300.0 && lost < 2000.0, "{figures:?}");
             assert!(median_ms < playout_ms + 1.5 && playout_ms < 20.0, "{figures:?}");
         }

@@ -1,4 +1,4 @@
-//! Cookies: proof that somebody receives at the address that he sends from, without memory of him.
+//! Cookies: proof that a sender receives at its address, without storing anything about the sender.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -9,9 +9,9 @@ use blake2::{
 
 use crate::keys::KeyError;
 
-/// Length of a cookie, bytes.
+/// Bytes.
 pub(super) const COOKIE_LEN: usize = 16;
-/// A secret is exchanged after this, s; the one before still counts.
+/// A secret is replaced after this, s; the previous one remains valid.
 const SECRET_S: f64 = 60.0;
 
 /// Makes and checks cookies.
@@ -45,15 +45,15 @@ fn mac(secret: &[u8; 32], from: SocketAddr, token: u64) -> Blake2sMac<U16> {
 }
 
 impl Cookies {
-    /// With new secrets.
+    /// Starts with new secrets.
     ///
     /// # Errors
-    /// [`KeyError::Random`] if the system gives no random numbers.
+    /// [`KeyError::Random`] if the system provides no random numbers.
     pub fn new(now_s: f64) -> Result<Self, KeyError> {
         Ok(Self { secrets: [random()?, random()?], made_s: now_s })
     }
 
-    /// The cookie for who says hello from this address with this number.
+    /// Returns the cookie for a hello from this address with this number.
     pub fn make(&mut self, from: SocketAddr, token: u64, now_s: f64) -> [u8; COOKIE_LEN] {
         if now_s - self.made_s > SECRET_S
             && let Ok(secret) = random()
@@ -64,7 +64,7 @@ impl Cookies {
         mac(&self.secrets[0], from, token).finalize().into_bytes().into()
     }
 
-    /// Whether the cookie was made for this address and number, in the last two minutes.
+    /// Whether the cookie was made for this address and number in the last two minutes.
     pub fn is_ours(&self, from: SocketAddr, token: u64, cookie: &[u8]) -> bool {
         self.secrets.iter().any(|secret| mac(secret, from, token).verify_slice(cookie).is_ok())
     }

@@ -1,4 +1,4 @@
-//! Both sides of the handshake, without a socket or clock of their own.
+//! Both sides of the handshake, without their own socket or clock.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -12,55 +12,53 @@ use crate::{
     wire::{self, HANDSHAKE_LEN, HANDSHAKE_MAX, HELLO_LEN, Kind, Unreadable},
 };
 
-/// The protocol, as the Noise framework names it.
+/// The protocol's name in the Noise framework.
 pub const NOISE: &str = "Noise_IK_25519_ChaChaPoly_BLAKE2s";
-/// Both sides mix this into the handshake, so that another version fails also where its bytes look alike.
+/// Both sides mix this into the handshake, so that another version fails even if its bytes look alike.
 const PROLOGUE: &[u8] = b"nima network 1";
-/// What each side tells within the handshake: the number by which it knows the session.
+/// Length of the session number that each side sends within the handshake, bytes.
 const NUMBER_LEN: usize = 4;
-/// Handshakes that are computed in a second: in all, and for one address.
+/// Handshakes computed per second: in total, and for one address.
 const PER_S: f64 = 32.0;
 const PER_S_ADDRESS: f64 = 4.0;
-/// Answers to strangers in a second: cookies and refusals.
+/// Answers to strangers per second: cookies and refusals.
 const ANSWERS_PER_S: f64 = 2000.0;
-/// Addresses that are remembered for their rate.
+/// Number of addresses whose rates are stored.
 const ADDRESSES: usize = 64;
-/// A question is asked again after this, s; each time twice as long, up to the second figure.
+/// Interval before a request is repeated, s; it doubles each time, up to the second value.
 const AGAIN_S: f64 = 0.1;
 const AGAIN_MAX_S: f64 = 1.0;
 
-/// What a handshake gives.
+/// Result of a handshake.
 #[derive(Debug)]
 pub(crate) struct Agreed {
-    /// Keys of the session.
     pub(crate) keys: StatelessTransportState,
-    /// The other side.
     pub(crate) peer: PublicKey,
     /// Its number of the session, and ours.
     pub(crate) theirs: u32,
     pub(crate) ours: u32,
 }
 
-/// What came of a datagram of a handshake. An answer's length is that of what was written to `out`.
+/// Result of processing a handshake's datagram. `answer` is the number of bytes written to `out`.
 #[derive(Debug)]
 pub struct Heard {
     /// Length of the answer, bytes; 0 for none.
     pub answer: usize,
-    /// Why it leads no further.
+    /// Why it was rejected.
     pub trouble: Option<Trouble>,
     pub(crate) agreed: Option<Box<Agreed>>,
 }
 
-/// Why a datagram of a handshake leads no further.
+/// Why a datagram of a handshake was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
-    /// Cut, or not expected now.
+    /// Truncated, or unexpected.
     Malformed,
-    /// Of another version, which was told to its sender.
+    /// Of another version; the sender has been informed.
     ForeignVersion,
-    /// Beyond the limits of the rate.
+    /// Beyond the rate limits.
     Flooded,
-    /// A cookie that is not ours, a key that is not known, a message that cannot be decrypted.
+    /// A cookie that is not ours, an unknown key, or a message that cannot be decrypted.
     Refused,
     /// The other side refuses a session.
     TheyRefuse(Refusal),
@@ -87,7 +85,7 @@ fn builder(keys: &Keys) -> Result<Builder<'_>, snow::Error> {
     Builder::new(NOISE.parse()?).local_private_key(keys.private())?.prologue(PROLOGUE)
 }
 
-/// Writes a datagram of a handshake; its length.
+/// Writes a datagram of a handshake; returns its length.
 fn write(out: &mut [u8; HANDSHAKE_MAX], kind: Kind, token: u64, content: &[u8]) -> usize {
     let end = HANDSHAKE_LEN + content.len();
     out[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(kind, token));
@@ -107,7 +105,7 @@ pub struct Reception {
     all: Bucket,
     answers: Bucket,
     addresses: Vec<(IpAddr, Bucket)>,
-    /// No more consoles are admitted now.
+    /// Whether no more consoles are admitted now.
     pub is_full: bool,
 }
 
@@ -115,7 +113,7 @@ impl Reception {
     /// Admits these machines.
     ///
     /// # Errors
-    /// [`KeyError::Random`] if the system gives no random numbers.
+    /// [`KeyError::Random`] if the system provides no random numbers.
     pub fn new(keys: Keys, peers: Peers, now_s: f64) -> Result<Self, KeyError> {
         Ok(Self {
             keys,
@@ -128,17 +126,17 @@ impl Reception {
         })
     }
 
-    /// Number of addresses that it remembers anything of.
+    /// Number of addresses about which it stores anything.
     pub fn remembered(&self) -> usize {
         self.addresses.len()
     }
 
-    /// Takes a datagram of a handshake that came from this address; writes the answer to `out`.
+    /// Processes a datagram of a handshake from this address; writes the answer to `out`.
     pub fn hear(&mut self, datagram: &[u8], from: SocketAddr, now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> Heard {
         let Some(token) = wire::token(datagram) else { return Heard::trouble(Trouble::Malformed) };
         let kind = wire::kind(datagram);
         if matches!(kind, Ok(Kind::Hello) | Err(Unreadable::ForeignVersion(_))) {
-            // The answer is shorter than the question, so that it is no use to send it to somebody else.
+            // The answer is shorter than the request, so that it cannot be used to amplify an attack.
             if datagram.len() < HELLO_LEN {
                 return Heard::trouble(Trouble::Malformed);
             }
@@ -220,14 +218,14 @@ impl Reception {
     }
 }
 
-/// What a console waits for.
+/// The answer that a console is waiting for.
 #[derive(Debug)]
 enum Waits {
     Cookie,
     Response { noise: Box<HandshakeState>, ours: u32, sent: Box<[u8; HANDSHAKE_MAX]>, len: usize },
 }
 
-/// The console's side: one attempt after the other until a session is made.
+/// The console's side: repeats attempts until a session is made.
 #[derive(Debug)]
 pub struct Approach {
     keys: Keys,
@@ -239,10 +237,10 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// To the follower with this key.
+    /// Connects to the follower with this key.
     ///
     /// # Errors
-    /// [`KeyError::Random`] if the system gives no random numbers.
+    /// [`KeyError::Random`] if the system provides no random numbers.
     pub fn new(keys: Keys, follower: PublicKey) -> Result<Self, KeyError> {
         let mut this = Self { keys, follower, token: 0, waits: Waits::Cookie, next_s: f64::MIN, pause_s: AGAIN_S };
         this.begin_again()?;
@@ -257,12 +255,14 @@ impl Approach {
         Ok(())
     }
 
-    /// What is to be sent now: the question again, or one with a new number after an answer has failed to come. 0 for nothing.
+    /// Writes the datagram to be sent now: the repeated request, or one with a new number if no answer has arrived.
+    /// Returns 0 for none.
     pub fn due(&mut self, now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> usize {
         if now_s < self.next_s {
             return 0;
         }
-        // The same initiation again as long as the follower still knows the cookie: its response may have been lost. Then from the start.
+        // Repeats the same initiation for as long as the follower's cookie is valid, because its response may have been
+        // lost; then starts again.
         self.next_s = now_s + self.pause_s;
         self.pause_s = (2.0 * self.pause_s).min(AGAIN_MAX_S);
         if self.pause_s >= AGAIN_MAX_S && self.begin_again().is_err() {
@@ -277,7 +277,7 @@ impl Approach {
         }
     }
 
-    /// Takes a datagram of a handshake; writes the answer to `out`.
+    /// Processes a datagram of a handshake; writes the answer to `out`.
     pub fn hear(&mut self, datagram: &[u8], now_s: f64, out: &mut [u8; HANDSHAKE_MAX]) -> Heard {
         if wire::token(datagram) != Some(self.token) {
             return Heard::trouble(Trouble::Malformed);
@@ -294,7 +294,7 @@ impl Approach {
             },
             (Ok(Kind::Response), Waits::Response { .. }) => match self.finish(content) {
                 Some(agreed) => {
-                    // Time for the session to be taken over, before another is asked for.
+                    // Gives the loop time to adopt the session before another one is requested.
                     self.next_s = now_s + AGAIN_MAX_S;
                     self.pause_s = AGAIN_S;
                     Heard { answer: 0, trouble: None, agreed: Some(Box::new(agreed)) }
@@ -332,7 +332,7 @@ impl Approach {
         let Waits::Response { noise, ours, .. } = &mut self.waits else { return None };
         let mut theirs = [0; HANDSHAKE_MAX];
         let ours = *ours;
-        // A message that fails leaves the state as it was: the true one may still come.
+        // A message that fails leaves the state unchanged: the genuine one may still arrive.
         let len = noise.read_message(message, &mut theirs).ok()?;
         let theirs: [u8; NUMBER_LEN] = theirs[..len].try_into().ok()?;
         let Waits::Response { noise, .. } = std::mem::replace(&mut self.waits, Waits::Cookie) else { return None };

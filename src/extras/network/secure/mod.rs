@@ -1,11 +1,12 @@
-//! How a session is made: a cookie first, then a handshake of the Noise protocol with keys that both sides know.
+//! Setting up a session: a cookie first, then a handshake of the Noise protocol with keys that both sides know.
 //!
-//! 1. The console says hello; the follower answers with a cookie that it can check later without having kept anything.
+//! 1. The console says hello; the follower answers with a cookie that it can check later without having stored
+//!    anything.
 //! 2. The console sends the first message of Noise IK with the cookie; the follower answers with the second.
 //!
-//! A stranger costs the follower one hash per hello and nothing else; only who can receive at the address that he sends from makes it
-//! compute a key agreement, and only a known key makes it keep anything. Both are limited per address and in all. Source:
-//! The Noise Protocol Framework, revision 34; the cookie follows RFC 6347, 4.2.1.
+//! A stranger costs the follower only one hash per hello. Only a sender that can receive at its address makes the
+//! follower compute a key agreement, and only a known key makes it store anything. Both are limited per address and in
+//! total. Source: The Noise Protocol Framework, revision 34; the cookie follows RFC 6347, 4.2.1.
 
 mod cookie;
 mod handshake;
@@ -21,7 +22,7 @@ use crate::{
     wire::HANDSHAKE_MAX,
 };
 
-/// Both ends of a session between two machines that were made up, without a network.
+/// Makes both ends of a session between two fictitious machines, without a network.
 pub(crate) fn both_ends() -> Result<[Agreed; 2], KeyError> {
     let console = Keys::random()?;
     let follower = Keys::random()?;

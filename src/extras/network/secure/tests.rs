@@ -9,7 +9,7 @@ use crate::{
 
 type Datagram = [u8; HANDSHAKE_MAX];
 
-/// A follower that knows one console, that console, and one that it does not know.
+/// A follower with one paired console, that console, and one that is not paired.
 fn machines() -> (Reception, Approach, Approach) {
     let follower = Keys::random().unwrap();
     let console = Keys::random().unwrap();
@@ -25,7 +25,7 @@ fn from(number: u32) -> SocketAddr {
     (Ipv4Addr::from(0x0a00_0000 + number), 4000).into()
 }
 
-/// Lets them talk at `now_s`; the datagrams that were sent, and what the console was told in the end.
+/// Exchanges datagrams at `now_s`; returns the datagrams sent, and the console's final result.
 fn talk(
     reception: &mut Reception,
     console: &mut Approach,
@@ -39,7 +39,7 @@ fn talk(
     while len > 0 {
         sent += 1;
         let heard = reception.hear(&there[..len], from, now_s, &mut back);
-        assert!(heard.answer <= len, "nobody gets more than he sent");
+        assert!(heard.answer <= len, "no sender gets more than it sent");
         if heard.answer == 0 {
             return (sent, false, heard.trouble);
         }
@@ -136,7 +136,7 @@ fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
         assert!(!heard.is_agreed());
         answers += u32::from(heard.answer > 0);
         flooded += u32::from(heard.trouble == Some(Trouble::Flooded));
-        // And initiations with cookies that were made up.
+        // Also initiations with invented cookies.
         let mut initiation = [7; 200];
         initiation[..HANDSHAKE_LEN].copy_from_slice(&wire::handshake(Kind::Initiation, u64::from(i)));
         let heard = reception.hear(&initiation, from(i), f64::from(i) * 1e-5, &mut out);
@@ -145,7 +145,7 @@ fn a_flood_of_half_open_handshakes_costs_no_memory_and_few_key_agreements() {
     assert_eq!(answers + flooded, 50_000);
     assert!(answers < 1500, "half a second at 2000 per second, and what was saved up: {answers}");
     assert_eq!(reception.remembered(), 0, "no state");
-    // Who can receive is limited by his address: eight at once, then four per second.
+    // A sender that can receive is limited by its address: eight at once, then four per second.
     let computed = (0..1000).filter(|&i| {
         let told = talk(&mut reception, &mut stranger, from(7), 10.0 + f64::from(i) * 1.001);
         told.2 == Some(Trouble::TheyRefuse(Refusal::Key))

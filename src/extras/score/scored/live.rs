@@ -1,4 +1,4 @@
-//! A trial that is going on, scored from the ticks of its loop.
+//! A running trial, scored from the ticks of its loop.
 
 use nima_core::task::{Event, Happening, TaskKind};
 use nima_machine::{
@@ -10,11 +10,11 @@ use crate::{HandSample, Sample, Score, TaskFile};
 
 use super::{Trial, hand_of};
 
-/// Scores from the first tick in which an arm is engaged. What happens to the objects is told before the next tick.
+/// Scores from the first tick in which an arm is engaged. Events of the objects are added before the next tick.
 #[derive(Debug)]
 pub struct LiveTrial {
     trial: Trial,
-    /// The tick of both hands that is not yet complete.
+    /// The tick of both hands that is still incomplete.
     sample: Option<Sample>,
     begun_s: Option<f64>,
     newest_s: f64,
@@ -38,7 +38,7 @@ impl LiveTrial {
         }
     }
 
-    /// From this time of the loop (s) on the jaws of each side are open so far, rad.
+    /// Sets the openings of the jaws from this time of the loop (s) on, rad.
     pub fn opening(&mut self, t_s: f64, opening_rad: [f64; SIDES]) {
         if self.has_jaws {
             for side in Side::ALL {
@@ -47,13 +47,13 @@ impl LiveTrial {
         }
     }
 
-    /// This happened to the objects.
+    /// Adds an event of the objects.
     pub fn happening(&mut self, happening: &Happening) {
         self.ended |= happening.event == Event::Ended;
         self.trial.happening(happening);
     }
 
-    /// Takes the next tick of a side.
+    /// Adds the next tick of a side.
     pub fn tick(&mut self, tick: &Tick) {
         let engaged = tick.state == LoopState::Engaged;
         self.hand(tick.side, tick.t_s, hand_of(tick.tip_m, tick.measured_n, tick.rendered_n, engaged));
@@ -71,7 +71,7 @@ impl LiveTrial {
         sample.hands[side.index()] = Some(hand);
     }
 
-    /// Whether the task is done, or its time is over: what follows does not count.
+    /// Whether the task is done, or its time is over: later ticks do not count.
     pub fn is_over(&self) -> bool {
         self.ended || self.elapsed_s() > self.limit_s
     }
@@ -81,8 +81,8 @@ impl LiveTrial {
         self.begun_s.map_or(0.0, |begun_s| self.newest_s - begun_s)
     }
 
-    /// The score; `None` if no arm was engaged. With `is_done` the trial was completed when an arm was last engaged: where nobody tells when the
-    /// task is done.
+    /// Returns the score; `None` if no arm was engaged. With `is_done` the trial counts as completed when an arm was
+    /// last engaged: for scenes without a report of the completion.
     pub fn end(mut self, is_done: bool) -> Option<Score> {
         if let Some(last) = self.sample.take() {
             self.trial.sample(&last);
@@ -102,7 +102,8 @@ mod tests {
         LiveTrial::new(&TaskFile::from_toml(&task).unwrap())
     }
 
-    /// Both sides for some ticks from `from` (ms) on; the right hand is engaged and moves by a tenth of a millimetre in each.
+    /// Both sides for some ticks from `from` (ms) on; the right hand is engaged and moves by a tenth of a millimetre in
+    /// each.
     fn ticks(live: &mut LiveTrial, millis: std::ops::Range<u32>) {
         for millis in millis {
             let t_s = f64::from(millis) * 1e-3;

@@ -1,4 +1,4 @@
-//! From uneven samples to 100 Hz without aliasing and without delay.
+//! Converts uneven samples to 100 Hz without aliasing and without delay.
 
 use std::f64::consts::PI;
 
@@ -6,49 +6,50 @@ use nalgebra::Vector3;
 
 use super::Track;
 
-/// A step that is longer, s, is a gap: nothing is said about the motion in it.
+/// A longer step, s, is a gap: nothing is said about the motion in it.
 pub(crate) const LONGEST_GAP_S: f64 = 0.1;
 
-/// Step of the even samples that are filtered, s.
+/// Step of the evenly spaced samples that are filtered, s.
 const TICK_S: f64 = 1e-3;
-/// One of so many even samples is kept.
+/// One of this many even samples is kept.
 const EVERY: u64 = 10;
-/// The filter reaches so many even samples to either side.
+/// Half width of the filter in even samples.
 const REACH: u64 = 80;
 const TAPS: usize = 2 * REACH as usize + 1;
-/// Half the amplitude passes at this frequency, Hz. With the Hamming window over 161 ms the filter is flat within 0.1 dB up to 10 Hz, which
-/// SPARC looks at, and lets less than 1/300 pass above 31 Hz; what could be mistaken for less than 20 Hz lies above 80 Hz.
+/// Half the amplitude passes at this frequency, Hz. With the Hamming window over 161 ms the filter is flat within 0.1
+/// dB up to 10 Hz, the range of SPARC, and passes less than 1/300 above 31 Hz; frequencies that alias below 20 Hz are
+/// above 80 Hz.
 const CUTOFF_HZ: f64 = 20.0;
-/// Times are compared with this tolerance, s.
+/// Tolerance of time comparisons, s.
 const TOLERANCE_S: f64 = 1e-6;
 
 /// Interpolates to 1 kHz, filters with a symmetric window (no delay), keeps 100 Hz. Memory: 161 samples and the track.
 ///
-/// Beyond either end of a stretch the motion is continued by turning it half round about its end. A hand that starts or stops there, or goes on
-/// evenly, is continued smoothly by that.
+/// Beyond either end of a segment the motion is continued by point reflection about its end. This continues a hand that
+/// starts or stops there, or moves on evenly, smoothly.
 #[derive(Clone, Debug)]
 pub(crate) struct Decimator {
     taps: [f64; TAPS],
-    /// The newest even samples, at their number modulo the length.
+    /// The newest even samples, indexed by their number modulo the length.
     window: Vec<Vector3<f64>>,
     last: Option<(f64, Vector3<f64>)>,
-    /// Number of the next even sample; of the first and the last one of the stretch.
+    /// Number of the next even sample; of the first and the last one of the segment.
     next: u64,
     stretch: Option<[u64; 2]>,
-    /// Number of the even sample where the next point of the track is.
+    /// Number of the even sample at the next point of the track.
     next_point: u64,
     track: Track,
 }
 
 impl Decimator {
-    /// With memory for so many seconds.
+    /// Allocates memory for this many seconds.
     pub(crate) fn with_room(seconds: f64) -> Self {
         let taps = low_pass();
         let window = vec![Vector3::zeros(); TAPS];
         Self { taps, window, last: None, next: 0, stretch: None, next_point: 0, track: Track::with_room(seconds) }
     }
 
-    /// One sample, `t_s` after the beginning of the trial, later than the one before.
+    /// Adds one sample, `t_s` after the beginning of the trial, later than the previous one.
     pub(crate) fn take(&mut self, t_s: f64, value: Vector3<f64>) {
         let known = self.last.filter(|(before_s, _)| t_s - before_s <= LONGEST_GAP_S && t_s > *before_s);
         let (before_s, before) = known.unwrap_or_else(|| {
@@ -63,7 +64,7 @@ impl Decimator {
         self.last = Some((t_s, value));
     }
 
-    /// Ends the last stretch and gives the track.
+    /// Ends the last segment and returns the track.
     pub(crate) fn finish(mut self) -> Track {
         self.close();
         self.track
@@ -103,7 +104,7 @@ impl Decimator {
         self.next_point += EVERY;
     }
 
-    /// An even sample by its place from the first one of the stretch, also beyond its ends.
+    /// Returns an even sample by its index from the first one of the segment, also beyond its ends.
     fn continued(&self, first: u64, last: u64, place: i64) -> Vector3<f64> {
         let end = (last - first).cast_signed();
         let at = |place: i64| self.window[(first + place.cast_unsigned()) as usize % TAPS];
@@ -136,7 +137,7 @@ fn low_pass() -> [f64; TAPS] {
 mod tests {
     use super::*;
 
-    /// Amplitude of a sine that comes out, in the middle of 4 s.
+    /// Output amplitude of a sine, in the middle of 4 s.
     fn passes(hz: f64, even: impl Fn(u32) -> f64) -> f64 {
         let mut decimator = Decimator::with_room(4.0);
         for k in 0..4000 {

@@ -1,10 +1,9 @@
-//! Derivatives of a stretch of a track.
+//! Derivatives of a segment of a track.
 
 use nalgebra::Vector3;
 
 use super::STEP_S;
 
-/// Which derivative by time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Order {
     First,
@@ -12,8 +11,9 @@ pub(crate) enum Order {
     Third,
 }
 
-/// Length of the derivative at each point. Central differences over five points (errors of the fourth order in the step; the third
-/// derivative: second order). Beyond the ends the stretch is continued by turning it half round, as by the filter before.
+/// Magnitude of the derivative at each point. Central differences over five points (errors of the fourth order in the
+/// step; the third derivative: second order). Beyond the ends the segment is continued by point reflection, as in the
+/// filter.
 pub(crate) fn magnitudes(points: &[Vector3<f64>], order: Order) -> Vec<f64> {
     let (weights, per_step): ([f64; 5], f64) = match order {
         Order::First => ([1.0, -8.0, 0.0, 8.0, -1.0], 12.0 * STEP_S),
@@ -38,7 +38,7 @@ fn continued(points: &[Vector3<f64>], place: isize) -> Option<Vector3<f64>> {
     })
 }
 
-/// Mean over time (trapezoid) of stretches at even steps; `None` if they have no duration.
+/// Mean over time (trapezoid) of evenly spaced segments; `None` if they have no duration.
 pub(crate) fn mean<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
     let mut sum = 0.0;
     let mut steps = 0.0;
@@ -49,7 +49,7 @@ pub(crate) fn mean<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64
     (steps > 0.0).then(|| sum / steps)
 }
 
-/// Largest value; `None` of nothing.
+/// Maximum; `None` without a value.
 pub(crate) fn peak<'a>(stretches: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
     stretches.flatten().copied().reduce(f64::max)
 }

@@ -1,4 +1,4 @@
-//! Samples at uneven steps become a smooth track at 100 Hz, with its derivatives and its spectrum.
+//! Converts unevenly spaced samples to a smooth track at 100 Hz, with its derivatives and its spectrum.
 
 mod decimator;
 mod derivatives;

@@ -16,7 +16,7 @@ pub(crate) fn magnitude_spectrum(signal: &[f64], length: usize, bins: usize) -> 
     values.iter().take(bins).map(|value| (value.re * value.re + value.im * value.im).sqrt()).collect()
 }
 
-/// The number with its lowest `bits` in the opposite order.
+/// Reverses the lowest `bits` of the number.
 fn reversed(number: usize, bits: u32) -> usize {
     if bits == 0 { 0 } else { number.reverse_bits() >> (usize::BITS - bits) }
 }
@@ -28,7 +28,7 @@ fn transform(values: &mut [Complex<f64>]) {
         let (sin, cos) = libm::sincos(-2.0 * PI * k as f64 / length as f64);
         Complex::new(cos, sin)
     };
-    // Each is computed on its own: a recurrence would lose digits.
+    // Each is computed separately: a recurrence would lose digits.
     let turns: Vec<Complex<f64>> = (0..length / 2).map(turn).collect();
     let mut half = 1;
     while half < length {

@@ -1,13 +1,11 @@
-//! A track at 100 Hz, in stretches without a gap.
+//! A track at 100 Hz, in segments without gaps.
 
 use nalgebra::Vector3;
 
-/// Rate of a track, Hz.
 pub(crate) const RATE_HZ: f64 = 100.0;
-/// Step of a track, s.
 pub(crate) const STEP_S: f64 = 1.0 / RATE_HZ;
 
-/// Points of the shortest stretch that is kept: five points make the first derivative that is not only of its ends.
+/// Minimum number of points of a segment: with five points the first derivative does not depend only on its ends.
 const LEAST_POINTS: usize = 5;
 
 /// Points at multiples of [`STEP_S`] from the beginning of the trial.
@@ -19,15 +17,15 @@ pub(crate) struct Track {
 
 #[derive(Clone, Copy, Debug)]
 struct Run {
-    /// Place of its first point on the grid of the trial.
+    /// Index of its first point on the grid of the trial.
     grid: usize,
-    /// Its points in `points`.
+    /// Index of its first point in `points`.
     start: usize,
     len: usize,
 }
 
 impl Track {
-    /// Memory for so many seconds is taken now, so that a trial of this length takes no more.
+    /// Allocates memory for this many seconds, so that a trial of this length needs no more.
     pub(super) fn with_room(seconds: f64) -> Self {
         Self { points: Vec::with_capacity((seconds * RATE_HZ) as usize + 1), runs: Vec::with_capacity(64) }
     }
@@ -40,7 +38,8 @@ impl Track {
         self.points.push(point);
     }
 
-    /// The stretches without a gap: place of the first point on the grid, and the points. Those under 50 ms are left out.
+    /// Returns the segments without gaps: index of the first point on the grid, and the points. Segments under 50 ms
+    /// are left out.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (usize, &[Vector3<f64>])> {
         let long = self.runs.iter().filter(|run| run.len >= LEAST_POINTS);
         long.filter_map(|run| Some((run.grid, self.points.get(run.start..run.start + run.len)?)))

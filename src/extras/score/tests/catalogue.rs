@@ -1,10 +1,10 @@
-use std::{collections::BTreeSet, f64::consts::PI};
+use std::{collections::BTreeSet, f64::consts::PI, fmt::Write, path::Path};
 
 use nalgebra::Vector3;
 use nima_core::{Side, task::Event};
 
 use super::{task, trial};
-use crate::{HandSample, MEASURES, Score, TaskFile};
+use crate::{Definition, HandSample, MEASURES, Score, TaskFile};
 
 #[test]
 fn there_are_at_least_thirty_measures_with_names_of_their_own() {
@@ -26,17 +26,28 @@ fn the_score_like_that_of_fls_says_that_it_is_none() {
     assert!(definition.words.starts_with("FLS-like, not an FLS score"));
 }
 
-#[test]
-fn the_page_lists_every_measure_with_unit_and_definition() {
-    let page = include_str!("../../../../docs/score.md");
-    for definition in &MEASURES {
-        let per_hand = if definition.per_hand { "yes" } else { "-" };
-        let row = format!(
-            "| `{}` | {per_hand} | {} | {} {} | {} |",
-            definition.id, definition.unit, definition.words, definition.definition, definition.source
-        );
-        assert!(page.lines().any(|line| line == row), "docs/score.md lacks the row\n{row}");
+/// `docs/reference/measures.md`, from the catalogue.
+fn page() -> String {
+    let mut page = String::from(
+        "# Measures\n\nEvery measure of the [score](../score.md). `count` is a number of events, `1` a ratio. \"Per hand\": the id ends with \
+         `_left` or `_right`.\n\nThis page is generated: change the catalogue in `src/extras/score/catalogue.rs`, then run \
+         `NIMA_WRITE_DOCS=1 cargo test -p nima-score the_page`.\n\n\
+         | id | per hand | unit | definition | source |\n|---|---|---|---|---|\n",
+    );
+    for Definition { id, words, unit, definition, source, per_hand } in MEASURES {
+        let per_hand = if per_hand { "yes" } else { "-" };
+        writeln!(page, "| `{id}` | {per_hand} | {unit} | {words} {definition} | {source} |").unwrap();
     }
+    page
+}
+
+#[test]
+fn the_page_of_the_measures_is_that_of_the_catalogue() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/reference/measures.md");
+    if std::env::var_os("NIMA_WRITE_DOCS").is_some() {
+        std::fs::write(&path, page()).unwrap();
+    }
+    assert_eq!(std::fs::read_to_string(path).unwrap(), page(), "write the page again with NIMA_WRITE_DOCS=1");
 }
 
 #[test]
@@ -47,7 +58,7 @@ fn the_task_file_of_the_page_holds_the_defaults() {
     assert_eq!(TaskFile::from_toml(text).unwrap(), bare);
 }
 
-/// A trial in which everything happens.
+/// A trial with every kind of event.
 fn full(more: &str) -> Score {
     let hands = |t_s: f64| {
         Side::ALL.map(|side| {

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::task;
 use crate::{HandSample, Sample, Score, Scorer};
 
-/// Any number, and often one that is likely to do harm.
+/// Any number, often a problematic one.
 fn number() -> impl Strategy<Value = f64> {
     let odd = prop_oneof![
         Just(f64::NAN),
@@ -59,7 +59,7 @@ fn event() -> impl Strategy<Value = Event> {
     })
 }
 
-/// Time to the next one, s: mostly a usual step.
+/// Time to the next one, s: usually a normal step.
 fn step() -> impl Strategy<Value = f64> {
     prop_oneof![12 => 0.0..0.02, 3 => 0.0..0.3, 1 => number()]
 }

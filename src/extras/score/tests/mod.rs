@@ -1,4 +1,4 @@
-//! Every measure against motions and forces whose measures are known on paper.
+//! Every measure on motions and forces with analytically known results.
 
 mod catalogue;
 mod events;
@@ -23,7 +23,7 @@ fn task(more: &str) -> TaskFile {
     TaskFile::from_toml(&format!("name = 'test'\n{kind}{more}")).unwrap()
 }
 
-/// A trial at 1 kHz from 0 s to `end_s`, with these events besides its beginning and end.
+/// A trial at 1 kHz from 0 s to `end_s`, with these events in addition to its beginning and end.
 fn trial(task: &TaskFile, end_s: f64, hands: impl Fn(f64) -> Hands, events: &[(f64, Event)]) -> Score {
     let times_s = (0..=(end_s * 1000.0).round() as u32).map(|tick| f64::from(tick) * 1e-3);
     trial_at(task, times_s, end_s, hands, events)
@@ -37,7 +37,7 @@ fn trial_at(
     hands: impl Fn(f64) -> Hands,
     events: &[(f64, Event)],
 ) -> Score {
-    // Another zero than that of the clock, so that no time is taken for one since the beginning.
+    // An offset, so that a clock time cannot be mistaken for a time since the beginning.
     let zero_s = 5000.0;
     let mut scorer = Scorer::new(task);
     scorer.happening(&Happening { t_s: zero_s, event: Event::Begun });
@@ -63,13 +63,13 @@ fn right(tip_m: Vector3<f64>) -> Hands {
     Side::Right.alone(tip(tip_m))
 }
 
-/// Way, from 0 to 1, of a minimum-jerk reach that takes 1 s (Flash and Hogan 1985).
+/// Position, from 0 to 1, of a minimum-jerk reach that takes 1 s (Flash and Hogan 1985).
 fn minimum_jerk(s: f64) -> f64 {
     let s = s.clamp(0.0, 1.0);
     s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
 }
 
-/// A measure of the right hand.
+/// Returns a measure of the right hand.
 fn of(score: &Score, id: &str) -> f64 {
     score.of(id, Side::Right).unwrap_or_else(|| panic!("no {id}"))
 }
@@ -80,7 +80,7 @@ fn value(score: &Score, id: &str) -> f64 {
 
 #[track_caller]
 fn near(what: &str, ours: f64, known: f64, relative: f64) {
-    // `NIMA_SCORE_SHOW` prints every comparison, for docs/score.md.
+    // `NIMA_SCORE_SHOW` prints every comparison, for docs/results/statistics.md.
     if std::env::var_os("NIMA_SCORE_SHOW").is_some() {
         eprintln!("| {what} | {ours:.9e} | {known:.9e} | {:.1e} |", ((ours - known) / known).abs());
     }

@@ -8,7 +8,7 @@ use crate::{HandSample, Score, ellipsoid::CHI_SQUARE_95};
 
 const DIRECTION: Vector3<f64> = Vector3::new(0.6, 0.0, 0.8);
 
-/// A reach of 0.2 m in 2 s, all of the trial.
+/// A reach of 0.2 m in 2 s, which is the whole trial.
 fn reach(times_s: impl Iterator<Item = f64>) -> Score {
     let way = |t_s: f64| right(DIRECTION * (0.2 * minimum_jerk(t_s / 2.0)) + Vector3::new(1.0, 2.0, 3.0));
     trial_at(&task(""), times_s, 2.0, way, &[])
@@ -120,7 +120,7 @@ fn three_reaches_with_rests_are_three_smooth_movements() {
         |s: f64| 3600.0 * s - 21_600.0 * s.powi(2) + 57_600.0 * s.powi(3) - 64_800.0 * s.powi(4) + 25_920.0 * s.powi(5);
     let known = -((1.0 - 2.0 * early).powi(3) / 1.875_f64.powi(2) * (square(1.0 - early) - square(early))).ln();
     let ours = of(&score, "log_dimensionless_jerk_per_movement");
-    // Between rest and motion the jerk jumps, which the filter rounds off.
+    // Between rest and motion the jerk jumps, which the filter smooths.
     near("three reaches: log_dimensionless_jerk_per_movement", ours, known, 0.03);
     assert!(of(&score, "sparc") < -3.0, "the whole of it is not smooth: {}", of(&score, "sparc"));
     near("three reaches: hand_idle_time_s", of(&score, "hand_idle_time_s"), 3.0 + 3.0 * 2.0 * early, 0.02);

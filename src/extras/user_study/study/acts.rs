@@ -1,4 +1,4 @@
-//! What is done in a study, each written into its journal before the call returns.
+//! Operations on a study, each written to its journal before the call returns.
 
 use std::{
     io,
@@ -13,7 +13,7 @@ use crate::{
     telling,
 };
 
-/// A trial that has begun. Its `Debug` does not tell the condition.
+/// A trial that has begun. Its `Debug` does not reveal the condition.
 #[derive(Debug)]
 pub struct Running {
     participant: String,
@@ -24,32 +24,31 @@ pub struct Running {
 }
 
 impl Running {
-    /// Which trial.
     pub const fn trial(&self) -> TrialId {
         self.trial
     }
 
-    /// What stands for its condition; nothing in practice.
+    /// The label of its condition; `None` in practice.
     pub const fn label(&self) -> Option<Label> {
         self.label
     }
 
-    /// What the hand is to feel: for the loop alone, nothing may show it.
+    /// The feedback to the hand: only for the loop, must never be displayed.
     pub const fn condition(&self) -> &Condition {
         &self.condition
     }
 
-    /// Where to record it, if it is to be recorded. Encrypted when the trial is over.
+    /// Path of its recording, if it is recorded. Encrypted when the trial is over.
     pub fn session(&self) -> Option<&Path> {
         self.session.as_deref()
     }
 }
 
 impl Study {
-    /// Begins the trial that comes next; it is in the journal when this returns.
+    /// Begins the next trial; it is in the journal when this returns.
     ///
     /// # Errors
-    /// [`StudyError::NotNow`] if something else comes next.
+    /// [`StudyError::NotNow`] if the next step is not a trial.
     pub fn begin_trial(&mut self, participant: &str, simulated: bool, at: &str) -> Result<Running, StudyError> {
         let who = self.plan.participant(participant)?.clone();
         let next = self.state.next(&self.plan, &who);
@@ -68,15 +67,15 @@ impl Study {
         if let Some(label) = label {
             return self.secret.condition(label);
         }
-        // Without a condition of its own, practice takes each in turn.
+        // If practice has no fixed condition, it uses each in turn.
         let turn = (trial.number as usize).checked_sub(1)? % who.order.len().max(1);
         self.secret.practice().or_else(|| self.secret.condition(*who.order.get(turn)?))
     }
 
-    /// Ends a trial that has a result.
+    /// Ends a trial with a result.
     ///
     /// # Errors
-    /// Whatever the system says while writing.
+    /// I/O errors.
     pub fn end_trial(&mut self, running: Running, ending: Ending, score: &Score, at: &str) -> Result<(), StudyError> {
         let is_told = self.state.is_open(&self.plan);
         let (telling, told): (Measures, Measures) =
@@ -92,10 +91,10 @@ impl Study {
         self.write(at, Event::TrialEnded { participant, trial, ending, measures: told, withheld, session })
     }
 
-    /// Gives up a trial; the rule of the study says what follows.
+    /// Gives up a trial; the rule of the study determines the next step.
     ///
     /// # Errors
-    /// Whatever the system says while writing.
+    /// I/O errors.
     pub fn abort_trial(&mut self, running: Running, why: &str, at: &str) -> Result<(), StudyError> {
         if let Some(path) = running.session.as_deref().filter(|path| path.is_file()) {
             self.put_away(path)?;
@@ -104,10 +103,10 @@ impl Study {
         self.write(at, Event::TrialAborted { participant, trial, why: why.to_owned() })
     }
 
-    /// Writes down a break, also one that was not due.
+    /// Records a break, even one that was not due.
     ///
     /// # Errors
-    /// [`StudyError::Refused`] if it was shorter than the study asks for.
+    /// [`StudyError::Refused`] if it was shorter than the study requires.
     pub fn take_break(&mut self, participant: &str, seconds: f64, simulated: bool, at: &str) -> Result<(), StudyError> {
         let next = self.next(participant)?;
         if let Step::Break { least_s } = next
@@ -123,10 +122,10 @@ impl Study {
         self.write(at, Event::BreakTaken { participant: participant.to_owned(), seconds, simulated })
     }
 
-    /// Takes the answers to the questionnaire that comes next.
+    /// Records the answers to the next questionnaire.
     ///
     /// # Errors
-    /// [`StudyError::NotNow`] if another one comes next, [`StudyError::Answers`] if the form does not allow an answer.
+    /// [`StudyError::NotNow`] if it is not the next step, [`StudyError::Answers`] if the form does not allow an answer.
     pub fn answer(&mut self, participant: &str, answers: Answers, simulated: bool, at: &str) -> Result<(), StudyError> {
         let next = self.next(participant)?;
         let Step::Questionnaire { questionnaire, after } = next else {
@@ -139,10 +138,10 @@ impl Study {
         self.write(at, Event::Answered { participant: participant.to_owned(), after, answers, simulated })
     }
 
-    /// Leaves a participant out of the analysis, or one trial.
+    /// Excludes a participant, or one trial, from the analysis.
     ///
     /// # Errors
-    /// A trial that was not made.
+    /// The trial has not been made.
     pub fn exclude(&mut self, participant: &str, number: Option<u32>, why: &str, at: &str) -> Result<(), StudyError> {
         self.plan.participant(participant)?;
         if why.trim().is_empty() {
@@ -151,16 +150,16 @@ impl Study {
         self.write(at, Event::Excluded { participant: participant.to_owned(), number, why: why.to_owned() })
     }
 
-    /// Keeps a note.
+    /// Records a note.
     ///
     /// # Errors
-    /// An unknown participant.
+    /// The participant does not exist.
     pub fn note(&mut self, participant: Option<&str>, text: &str, at: &str) -> Result<(), StudyError> {
         participant.map(|name| self.plan.participant(name)).transpose()?;
         self.write(at, Event::Noted { participant: participant.map(str::to_owned), text: text.to_owned() })
     }
 
-    /// Opens the assignment: an act that is written down. From then on the tables name the conditions.
+    /// Reveals the assignment, which is recorded. From then on the tables name the conditions.
     ///
     /// # Errors
     /// [`StudyError::Refused`] without a name and a reason, in a study that is not blind, and the second time.
@@ -182,7 +181,7 @@ impl Study {
 
     pub(super) fn write(&mut self, at: &str, event: Event) -> Result<(), StudyError> {
         let Some(journal) = &mut self.journal else { return Err(StudyError::ReadOnly) };
-        // What the state refuses must not stand in the journal, which could then not be read any more.
+        // An entry that the state refuses must not be written: the journal could then no longer be read.
         let mut state = self.state.clone();
         let refused = |why: String| StudyError::Refused(why);
         state.take(&self.plan, &crate::Entry { n: 0, at: at.to_owned(), event: event.clone() }).map_err(refused)?;

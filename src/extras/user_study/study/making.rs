@@ -14,10 +14,11 @@ use crate::{
 };
 
 impl Study {
-    /// Makes the folder of a study: whole, or not at all. `scene` is the text of the scene file, which is kept in the folder.
+    /// Creates the folder of a study: whole, or not at all. `scene` is the text of the scene file, which is stored in
+    /// the folder.
     ///
     /// # Errors
-    /// A folder with something in it, mistakes in the file, whatever the system says.
+    /// The folder is not empty, the file has mistakes, or an I/O error.
     pub fn create(folder: &Path, file: &StudyFile, scene: &str, at: &str) -> Result<Self, StudyError> {
         file.check()?;
         let is_empty = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
@@ -33,7 +34,7 @@ impl Study {
         journal.append(at, Event::StudyMade { commitment })?;
         drop(journal);
         synced(made.path()).map_err(StudyError::io(folder))?;
-        // Elsewhere an empty folder is replaced.
+        // Other systems replace an empty folder.
         if cfg!(windows) && folder.exists() {
             fs::remove_dir(folder).map_err(StudyError::io(folder))?;
         }
@@ -43,7 +44,7 @@ impl Study {
     }
 }
 
-/// Writes the files of a new study; gives the commitment.
+/// Writes the files of a new study; returns the commitment.
 fn fill(folder: &Path, file: &StudyFile, scene: &str) -> io::Result<String> {
     let key = Key::new()?;
     let secret = serde_json::to_string_pretty(&Opened::draw(file)?)? + "\n";
@@ -55,14 +56,14 @@ fn fill(folder: &Path, file: &StudyFile, scene: &str) -> io::Result<String> {
     {
         let path = folder.join(name);
         nima_files::write_atomically(&path, |file| file.write_all(text.as_bytes()))?;
-        // Windows writes out only what may be written to.
+        // Windows syncs only files that are open for writing.
         File::options().write(true).open(path)?.sync_all()?;
     }
     nima_files::write_private(&folder.join(KEY), &(key.to_hex() + "\n"))?;
     Ok(commitment)
 }
 
-/// Names in a folder are on the disk too.
+/// Makes the names in the folder durable too.
 fn synced(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }

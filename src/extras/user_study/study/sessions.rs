@@ -1,4 +1,4 @@
-//! Recordings of trials: encrypted when the trial is over, opened by the unblinding.
+//! Recordings of trials: encrypted when the trial is over, decrypted by the unblinding.
 
 use std::{
     fs::{self, File},
@@ -12,11 +12,11 @@ use crate::{Phase, StudyError, TrialId};
 const SESSIONS: &str = "sessions";
 /// The ending of an encrypted session.
 const SEALED_END: &str = "sealed";
-/// What is encrypted.
+/// Purpose of the encryption.
 const SESSION: &str = "session";
 
 impl Study {
-    /// The place of a recording.
+    /// Returns the path of a recording.
     pub(super) fn session_of(&self, participant: &str, trial: TrialId) -> Result<PathBuf, StudyError> {
         let folder = self.folder.join(SESSIONS);
         fs::create_dir_all(&folder).map_err(StudyError::io(&folder))?;
@@ -24,7 +24,7 @@ impl Study {
         Ok(folder.join(format!("{participant}-{phase}-{:02}-{}.mcap", trial.number, trial.attempt)))
     }
 
-    /// Encrypts a recording, if nobody may see it; gives its name in the folder.
+    /// Encrypts a recording if it must be hidden; returns its name in the folder.
     pub(super) fn put_away(&self, plain: &Path) -> Result<String, StudyError> {
         let kept = if self.state.is_open(&self.plan) {
             plain.to_owned()
@@ -52,8 +52,8 @@ impl Study {
         fs::remove_file(from).map_err(StudyError::io(from))
     }
 
-    /// Brings the folder to what the journal says: recordings that an interrupted program left are encrypted, and after the unblinding
-    /// all are opened and the assignment is there to read.
+    /// Makes the folder match the journal: recordings left by an interrupted program are encrypted, and after the
+    /// unblinding all are decrypted and the assignment is readable.
     pub(super) fn tidy(&self) -> Result<(), StudyError> {
         let is_open = self.state.is_open(&self.plan);
         let opened = self.folder.join(OPENED);

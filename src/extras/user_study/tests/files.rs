@@ -18,7 +18,7 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (with("attempts = 11"), "attempts = 11"),
         (with("pilot = true"), "pilot"),
         (with("secondary = ['speed']"), "there is no measure \"speed\""),
-        (with("secondary = ['completion_time_s']"), "there twice"),
+        (with("secondary = ['completion_time_s']"), "occurs twice"),
         (with("secondary = ['peak_force_n']"), "_left or _right"),
         (with("reference = 'Gnu'"), "no condition \"Gnu\""),
         (TWO.replace("mode = 'anchored'\n", ""), "mode is missing"),
@@ -29,21 +29,21 @@ fn every_mistake_is_one_line_that_names_the_key() {
         (TWO.replace("gain = 0.8125", "gain = nan"), "gain has to be"),
         (TWO.replace("no_force = true", "no_force = true\ngain = 0.5"), "no_force"),
         (TWO.replace("'Yak'", "'Zebra'"), "called \"Zebra\""),
-        (TWO.replace("'Yak'", "'B'"), "taken for a label"),
+        (TWO.replace("'Yak'", "'B'"), "mistaken for a label"),
         (TWO.replace("'Yak'", "'Ya,k'"), "its name has to be"),
         (ending("[[conditions]]\nname = 'Gnu'\nno_force = true"), "are the same"),
         (ending("[[exclusion]]\nmeasure = 'drops'\nis = 'above'\nexclude = 'trial'"), "limit is missing"),
         (ending("[[exclusion]]\nmeasure = 'drops'\nis = 'missing'\nexclude = 'trial'\ntimes = 2"), "times"),
         (
             ending("[[exclusion]]\nmeasure = 'peak_rendered_n_right'\nis = 'missing'\nexclude = 'trial'"),
-            "tells the condition",
+            "reveals the condition",
         ),
         (ending("[practice]\nunder = 'Gnu'\n[practice.criterion]"), "practice.under"),
         (ending("[practice]\n[practice.criterion]\nmax_trials = 5"), "do not fit"),
         (ending("[practice]\n[practice.criterion]\ntime_s = nan"), "time_s"),
         (with("feedback = 'fades'"), "add [practice.criterion]"),
         (with("feedback = 'sometimes'"), "sometimes"),
-        (ending("[questionnaires]\nat_end = ['sus', 'sus']"), "sus is there twice"),
+        (ending("[questionnaires]\nat_end = ['sus', 'sus']"), "sus occurs twice"),
         (ending("[questionnaires]\nat_end = ['mood']"), "mood"),
         (ending("[breaks]\nafter_trials = 0\nleast_s = 5.0"), "breaks.after_trials"),
         (ending("[breaks]\nafter_trials = 1\nleast_s = inf"), "breaks.least_s"),
@@ -64,7 +64,7 @@ fn all_mistakes_are_told_at_once() {
 fn the_name_of_a_blind_study_tells_no_condition() {
     for name in ["Zebra against Yak", "Touching, anchored", "Touching over 137.5 ms"] {
         let text = TWO.replace("Touching", name);
-        assert!(mistakes(&text)[0].contains("everybody reads it"), "{name}");
+        assert!(mistakes(&text)[0].contains("all users read it"), "{name}");
         assert!(!file(&format!("blind = false\n{text}")).blind);
     }
 }

@@ -17,7 +17,8 @@ fn a_torn_last_line_is_dropped_and_told_and_nothing_else_is_lost() {
     let whole = fs::read(journal(&folder)).unwrap();
     let lines: Vec<usize> =
         whole.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1).collect();
-    // Every place at which a write can have been cut off in the last line, and zeros, as some file systems leave them.
+    // Every position at which a write can have been cut off in the last line, and zeros, as some file systems leave
+    // them.
     let last = lines[lines.len() - 2];
     let cuts = (last..whole.len()).step_by(7).chain([whole.len() - 1]);
     let zeros = [&whole[..last], &[0; 64]].concat();
@@ -82,7 +83,7 @@ fn a_journal_that_was_changed_is_refused_with_its_line() {
     for (text, words) in [
         (without(0), "line 1: it has number 2"),
         (without(1), "line 2: it has number 3"),
-        (whole.replace("trial_ended", "trial_won"), "line 4: it is no line"),
+        (whole.replace("trial_ended", "trial_won"), "line 4: it is not a line"),
         (
             whole.replace("\"number\":1,\"attempt\":1,\"label\"", "\"number\":2,\"attempt\":1,\"label\""),
             "line 3: P01 began trial 2",
@@ -108,7 +109,7 @@ fn one_program_at_a_time_writes_and_others_may_look() {
     let mut looking = Study::read(&folder.path().join("study")).unwrap();
     assert!(next(&looking, "P01").contains("has begun"));
     assert!(matches!(looking.note(None, "x", AT), Err(StudyError::ReadOnly)));
-    study.abort_trial(running, "somebody came in", AT).unwrap();
+    study.abort_trial(running, "a visitor came in", AT).unwrap();
     assert_eq!(due(&study, "P01"), (1, 2));
 }
 
@@ -121,15 +122,15 @@ fn what_is_not_next_is_refused_and_does_not_stand_in_the_journal() {
         let told = result.unwrap_err().to_string();
         assert!(told.contains(words), "{words}: {told}");
     };
-    refused(study.answer("P01", Answers::Realism(3), true, AT), "not what comes next, which is trial 1");
-    refused(study.answer("P77", Answers::Realism(3), true, AT), "there are P01 to P04");
+    refused(study.answer("P01", Answers::Realism(3), true, AT), "not the next step; do trial 1");
+    refused(study.answer("P77", Answers::Realism(3), true, AT), "choose one of P01 to P04");
     refused(study.exclude("P01", Some(1), "fell asleep", AT), "has not made trial 1");
     refused(study.exclude("P01", None, " ", AT), "needs a reason");
     refused(study.unblind("", "x", AT), "needs a name");
     assert_eq!(fs::read(journal(&folder)).unwrap(), before);
     (0..3).for_each(|_| trial(&mut study, "P01", 20));
     refused(study.begin_trial("P01", true, AT).map(drop), "questionnaire realism");
-    refused(study.answer("P01", Answers::Sus([3; 10]), true, AT), "sus is not what comes next");
+    refused(study.answer("P01", Answers::Sus([3; 10]), true, AT), "sus is not the next step");
     refused(study.answer("P01", Answers::Realism(9), true, AT), "from 1 to 7");
     study.answer("P01", Answers::Realism(6), true, AT).unwrap();
     assert_eq!(due(&study, "P01"), (4, 1));

@@ -19,7 +19,7 @@ use crate::{Ending, Step, Study, StudyFile};
 
 pub(super) const AT: &str = "2026-01-01T09:00:00Z";
 
-/// Two conditions whose words and numbers stand nowhere else.
+/// Two conditions whose words and numbers occur nowhere else.
 pub(super) const TWO: &str = "
 name = 'Touching'
 scene = 'rings'
@@ -49,7 +49,7 @@ pub(super) fn again(folder: &Path) -> Study {
     Study::open(&folder.join("study"), AT).unwrap()
 }
 
-/// A score of a trial that took so long, with a force that was felt.
+/// A score of a trial with this duration and a force in the hand.
 pub(super) fn score(seconds: u32) -> Score {
     let mut scorer = Scorer::new(&TaskFile::from_toml("name = 'x'\nkind = 'peg_transfer'").unwrap());
     scorer.happening(&Happening { t_s: 0.0, event: Event::Begun });
@@ -71,7 +71,7 @@ fn vector<V: From<[f64; 3]>>(values: [f64; 3]) -> V {
     V::from(values)
 }
 
-/// Does the next trial in so many seconds.
+/// Does the next trial in this many seconds.
 pub(super) fn trial(study: &mut Study, participant: &str, seconds: u32) {
     let running = study.begin_trial(participant, true, AT).unwrap();
     study.end_trial(running, Ending::Completed, &score(seconds), AT).unwrap();
@@ -81,7 +81,7 @@ pub(super) fn next(study: &Study, participant: &str) -> String {
     study.next(participant).unwrap().to_string()
 }
 
-/// Number and attempt of the trial that comes next.
+/// Number and attempt of the next trial.
 pub(super) fn due(study: &Study, participant: &str) -> (u32, u32) {
     match study.next(participant).unwrap() {
         Step::Trial { number, attempt, .. } | Step::Practice { number, attempt } => (number, attempt),

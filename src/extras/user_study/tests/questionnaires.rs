@@ -1,6 +1,7 @@
 use crate::{Answers, PAIRS, Questionnaire, Ratings, TlxScale, of_sus, raw_tlx, simulated::Person, weighted_tlx};
 
-/// Worked by hand: ratings 30, 15, 60, 40, 40, 30; the scales are chosen 3, 0, 5, 1, 3, 3 times: 90 + 0 + 300 + 40 + 120 + 90 = 640.
+/// Computed by hand: ratings 30, 15, 60, 40, 40, 30; the scales are chosen 3, 0, 5, 1, 3, 3 times: 90 + 0 + 300 + 40 +
+/// 120 + 90 = 640.
 #[test]
 fn the_weighted_tlx_is_weight_times_rating_over_fifteen() {
     use TlxScale::{Effort, Frustration, Mental, Performance, Temporal};
@@ -16,7 +17,7 @@ fn the_weighted_tlx_is_weight_times_rating_over_fifteen() {
     assert_eq!(weights, [3, 0, 5, 1, 3, 3]);
     let ratings = [30, 15, 60, 40, 40, 30];
     assert!((weighted_tlx(&ratings, &chosen) - 640.0 / 15.0).abs() < 1e-12);
-    // All weights equal would be the raw score, which is the mean.
+    // Equal weights would give the raw score, which is the mean.
     assert!((raw_tlx(&ratings) - 215.0 / 6.0).abs() < 1e-12);
     assert!((weighted_tlx(&[70; 6], &chosen) - 70.0).abs() < 1e-12, "the weights add up to fifteen");
 }

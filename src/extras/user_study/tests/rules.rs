@@ -6,7 +6,7 @@ fn abort(study: &mut Study, participant: &str) {
     study.abort_trial(running, "the sensor came off", AT).unwrap();
 }
 
-/// Begins a trial and ends the program: what a power cut leaves.
+/// Begins a trial and ends the program, as in a power failure.
 fn cut(folder: &std::path::Path, mut study: Study, participant: &str) -> Study {
     drop(study.begin_trial(participant, true, AT).unwrap());
     drop(study);
@@ -249,7 +249,7 @@ fn shown(feedback: &str, seconds: &[u32]) -> Vec<bool> {
     let mut study = made(folder.path(), &text);
     let mut all = Vec::new();
     for (number, seconds) in seconds.iter().enumerate() {
-        // What is shown follows from the journal, whoever reads it and when.
+        // The displayed results follow from the journal alone.
         if number == 5 {
             study = cut(folder.path(), study, "P01");
         }

@@ -1,7 +1,8 @@
-//! The world of an emulated arm pair on the virtual clock: the readings of its devices as their drivers give them, without lines and threads.
+//! The world of an emulated arm pair on the virtual clock: the readings of its devices as returned by their drivers,
+//! without connections and threads.
 //!
-//! Takes the loop's outputs; gives readings in the devices' own frames and units, each at its own rate and on its own clock. Whoever reads
-//! makes measurements of them as a rig of devices does ([`Measured`]).
+//! Takes the loop's outputs; returns readings in the devices' own frames and units, each at its own rate and on its own
+//! clock. The caller converts them to measurements as a rig with devices does ([`Measured`]).
 
 use nima_core::kinematics::{Inverse, Joints};
 use nima_devices::{ARM_JOINTS, ArmReading, ForceReading, HandleReading, Stamped};
@@ -11,22 +12,22 @@ use nima_simulation::scene::Scene;
 use super::{EmulatedRigError, HandFrame, SideWorld, of_side};
 use crate::emulators::{force_dimension::Applied, kinova::Asked};
 
-/// What the devices are, which decides how their readings look.
+/// Kind of devices, which determines the form of their readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wiring {
-    /// An Omega and a Gen3, which tell no time, and a Bota sensor, which tells its time and `f32`.
+    /// An Omega and a Gen3, which send no time stamps, and a Bota sensor, which sends a time stamp and `f32`.
     Emulated,
-    /// Devices of a lab's own: they tell their times and `f64`, and the sensor measures 500 times a second.
+    /// Devices of a lab's own design: they send time stamps and `f64`, and the sensor measures 500 times per second.
     External,
 }
 
 /// Clock of an external device when the world begins, s.
 const BEGAN_S: f64 = 1234.5;
-/// An external sensor measures so often, s, and begins so much after the loop.
+/// Period of an external sensor, s, and its start relative to the loop.
 const SENSOR_S: f64 = 2e-3;
 const SENSOR_FROM_S: f64 = 0.3e-3;
 
-/// Readings that are new in a tick.
+/// New readings in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ArmReadings {
     pub handle: Option<Stamped<HandleReading>>,
@@ -34,7 +35,7 @@ pub struct ArmReadings {
     pub sensor: Option<Stamped<ForceReading>>,
 }
 
-/// One side's devices around their world.
+/// The devices of one side around their world.
 #[derive(Clone, Debug)]
 pub struct Clocked {
     world: SideWorld,
@@ -47,7 +48,7 @@ pub struct Clocked {
 }
 
 impl Clocked {
-    /// The devices of this side of the rig, in this scene.
+    /// Makes the devices of this side of the rig, in this scene.
     ///
     /// # Errors
     /// [`EmulatedRigError`] if the rig has no such arm, or arm, trocar and scene do not fit together.
@@ -70,7 +71,7 @@ impl Clocked {
         })
     }
 
-    /// What the devices tell at loop time `now_s`.
+    /// Returns the devices' readings at loop time `now_s`.
     pub fn read(&mut self, now_s: f64) -> ArmReadings {
         let device_s = (self.wiring == Wiring::External).then_some(BEGAN_S + now_s);
         let held = self.world.hold(now_s, &self.applied);
@@ -110,7 +111,7 @@ impl Clocked {
         is_due.then_some(Stamped { device_s: Some(BEGAN_S + measured_s), arrival_s: now_s, value: felt })
     }
 
-    /// Angles as the wire tells them, rad.
+    /// Returns the angles in the resolution of the wire, rad.
     fn told(&self, joint_rad: &[f64; ARM_JOINTS]) -> [f64; ARM_JOINTS] {
         match self.wiring {
             Wiring::Emulated => joint_rad.map(|rad| f64::from(rad.to_degrees() as f32).to_radians()),
@@ -118,7 +119,7 @@ impl Clocked {
         }
     }
 
-    /// Gives the outputs of the loop to the devices; `measured` is what the rig knows of them.
+    /// Passes the loop's outputs to the devices; `measured` is the rig's view of them.
     pub fn write(&mut self, outputs: &Outputs, measured: &Measured) {
         self.servoing = outputs.drives;
         self.applied.force_n = if outputs.drives { outputs.hand_force_n } else { nalgebra::Vector3::zeros() };

@@ -1,4 +1,4 @@
-//! Errors of the force at the tip against the true force of the tissue, which only a simulation knows.
+//! Errors of the force at the tip, compared with the true force of the tissue, which is known only in a simulation.
 
 use nalgebra::Vector3;
 use nima_core::tip_force::Unsure;
@@ -12,7 +12,7 @@ use super::Truth;
 
 /// Name of the force that the loop uses.
 pub const IN_USE: &str = "tip force";
-/// What is compared: the force that the loop uses, and what it would have without the later calibrations.
+/// The compared methods: the force that the loop uses, and the force without the later calibrations.
 const METHODS: [&str; 3] = [IN_USE, "gravity only", "wrist only"];
 
 /// Mean and deviation, per axis (x, y, z of `world`), N.
@@ -42,10 +42,10 @@ impl Sums {
     }
 }
 
-/// Errors of one method without contact: what is told there is an error.
+/// Errors of one method without contact, where every reported force is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FreeError {
-    /// Samples without contact.
+    /// Number of samples without contact.
     pub samples: u64,
     /// Mean per axis, N.
     pub mean_n: [f64; 3],
@@ -56,9 +56,9 @@ pub struct FreeError {
 /// Errors of one method on one side, per axis (x, y, z of `world`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TipError {
-    /// The side.
     pub side: Side,
-    /// `tip force`: the force that the loop uses; `gravity only`: without the network; `wrist only`: as the sensor reads.
+    /// `tip force`: the force that the loop uses; `gravity only`: without the network; `wrist only`: the sensor's
+    /// reading.
     pub method: &'static str,
     /// Samples while engaged.
     pub samples: u64,
@@ -66,20 +66,20 @@ pub struct TipError {
     pub mae_n: [f64; 3],
     /// Without contact; `None` if there was contact all the time.
     pub free: Option<FreeError>,
-    /// Share of the samples in which the loop did not use the network.
+    /// Fraction of the samples in which the loop did not use the network.
     pub without_network: f64,
-    /// Shares of the samples in which the network was not sure, by the reason.
+    /// Fractions of the samples in which the network was uncertain, by reason.
     pub doubt: DoubtShares,
 }
 
-/// Where the network was not sure: shares of all samples, 0 to 1.
+/// Samples with an uncertain network, as fractions of all samples, 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct DoubtShares {
-    /// Outside the training data, where the network still answers by its linear path.
+    /// Outside the training data, where the network still returns its linear path.
     pub extrapolated: f64,
     /// Far outside the training data.
     pub outside_training: f64,
-    /// The direction of friction was not known.
+    /// The direction of friction was unknown.
     pub not_moved: f64,
     /// The orientation or the depth was missing.
     pub missing: f64,
@@ -96,17 +96,16 @@ impl DoubtShares {
     }
 }
 
-/// Errors of both sides.
 #[derive(Clone, Debug, Default)]
 pub struct TipErrors {
     sides: [[(Sums, Sums); METHODS.len()]; SIDES],
     without_network: [u64; SIDES],
-    /// Samples in doubt.
+    /// Number of uncertain samples.
     doubt: [DoubtShares; SIDES],
 }
 
 impl TipErrors {
-    /// Adds the true force (N, `world`) at the time of an engaged tick; others are left out.
+    /// Adds the true force (N, `world`) at the time of a tick; only engaged ticks count.
     pub fn add(&mut self, tick: &Tick, true_n: &Vector3<f64>) {
         let Some(sample) = tick.wrist.as_ref().filter(|_| tick.state.permits().coupled) else { return };
         let (Some(world_from_s1), Some(gravity_free)) = (sample.world_from_s1, tick.force.gravity_free) else { return };
@@ -133,12 +132,12 @@ impl TipErrors {
         }
     }
 
-    /// Adds the truth that was read at the time of a tick.
+    /// Adds the true state at the time of a tick.
     pub fn add_truth(&mut self, tick: &Tick, truth: &Truth) {
         self.add(tick, &truth.tip_n);
     }
 
-    /// The figures; none of a side without samples.
+    /// Returns the results; none for a side without samples.
     pub fn figures(&self) -> Vec<TipError> {
         Side::ALL.into_iter().flat_map(|side| self.of(side)).collect()
     }

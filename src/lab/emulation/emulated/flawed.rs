@@ -1,4 +1,4 @@
-//! What the flaws of real devices do to the readings of a side.
+//! Effects of real devices' flaws on the readings of a side.
 
 use std::collections::VecDeque;
 
@@ -7,27 +7,27 @@ use nima_core::frames::Wrench;
 use nima_devices::{ARM_JOINTS, Tracked};
 use nima_machine::rig::Flaws;
 
-/// Markers are hidden for so long at a time, s.
+/// Duration for which a marker is hidden each time, s.
 const HIDDEN_S: f64 = 0.25;
-/// Readings of the marker that are kept for a late tracker: more than its frames in the longest delay.
+/// Number of stored marker readings for a late tracker: more than its frames in the maximum delay.
 const KEPT: usize = 256;
 
-/// The flaws of a side, and what they have to remember.
+/// The flaws of a side, and their state.
 #[derive(Clone, Debug)]
 pub(super) struct Flawed {
     flaws: Flaws,
-    /// Angles that the encoders tell, rad.
+    /// Angles reported by the encoders, rad.
     told_rad: [f64; ARM_JOINTS],
     seen: VecDeque<(f64, Tracked)>,
 }
 
 impl Flawed {
-    /// With the joints at these angles, rad.
+    /// Starts with the joints at these angles, rad.
     pub(super) const fn new(flaws: Flaws, joint_rad: [f64; ARM_JOINTS]) -> Self {
         Self { flaws, told_rad: joint_rad, seen: VecDeque::new() }
     }
 
-    /// What the encoders tell of these angles, rad: they follow once the play is used up.
+    /// Returns the encoders' readings of these angles, rad: they follow once the play is used up.
     pub(super) fn encoders(&mut self, joint_rad: &[f64; ARM_JOINTS]) -> [f64; ARM_JOINTS] {
         let play_rad = 0.5 * self.flaws.backlash_deg.to_radians();
         for (told, rad) in self.told_rad.iter_mut().zip(joint_rad) {
@@ -36,24 +36,24 @@ impl Flawed {
         self.told_rad
     }
 
-    /// What the wrist sensor reads more after `t_s`, with the last joint at this angle (rad), in its own frame.
+    /// Returns the error of the wrist sensor after `t_s`, with the last joint at this angle (rad), in its own frame.
     pub(super) fn wrench(&self, t_s: f64, last_rad: f64) -> Wrench {
         let Flaws { drift_n_per_min, cable_n, .. } = self.flaws;
         let cable = Vector3::new(last_rad.sin(), last_rad.cos(), 0.5 * (2.0 * last_rad).sin()) * cable_n;
         Wrench { force_n: Vector3::repeat(drift_n_per_min * t_s / 60.0) + cable, torque_nm: Vector3::zeros() }
     }
 
-    /// How the accelerometer is turned more than the scene says.
+    /// Returns the accelerometer's misalignment in addition to the scene's.
     pub(super) fn askew(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.6, 0.0) * self.flaws.imu_askew_deg.to_radians())
     }
 
-    /// How far this force on the tip (N, `world`) bends a shaft that points along `direction`, m.
+    /// Returns the bending of a shaft that points along `direction` under this force on the tip (N, `world`), m.
     pub(super) fn bent_m(&self, force_n: &Vector3<f64>, direction: &Vector3<f64>) -> Vector3<f64> {
         (force_n - direction * force_n.dot(direction)) * self.flaws.bend_m_per_n
     }
 
-    /// What the tracker tells at `now_s` of a marker that is like this now.
+    /// Returns the tracker's reading at `now_s` of a marker in this state.
     pub(super) fn tracked(&mut self, now_s: f64, marker: Tracked) -> Tracked {
         let Flaws { tracker_late_s, tracker_missing, .. } = self.flaws;
         if self.seen.len() == KEPT {
@@ -63,7 +63,7 @@ impl Flawed {
         while self.seen.get(1).is_some_and(|(at_s, _)| *at_s <= now_s - tracker_late_s) {
             self.seen.pop_front();
         }
-        // A sequence that is the same in every run.
+        // The sequence is the same in every run.
         let turn = (now_s / HIDDEN_S) as u64;
         let chance = fastrand::Rng::with_seed(turn).f64();
         if chance < tracker_missing {

@@ -1,4 +1,5 @@
-//! The technician does the frame calibrations, in virtual time: the sessions see joints, marker, handle and force as drivers tell them.
+//! The technician performs the frame calibrations in virtual time: the sessions get joints, marker, handle and force in
+//! the form of the drivers.
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -66,7 +67,7 @@ impl Bench {
         }
     }
 
-    /// Samples under the prompt for so many poses until all is covered.
+    /// Runs the session with this many samples per pose until everything is covered.
     fn run<C: Calibration>(
         &mut self,
         calibration: C,
@@ -76,7 +77,7 @@ impl Bench {
     ) -> FrameReport<C::Found> {
         let mut session = FrameSession::new(calibration);
         let begin_s = self.t_s;
-        // The arm is carried to where the calibration begins.
+        // The arm is carried to the start of the calibration.
         for _ in 0..6000 {
             self.sample(task, Prompt::Rest);
         }
@@ -104,7 +105,7 @@ impl Bench {
     }
 }
 
-/// Tip, hand-eye and trocar at this arm, against the truth.
+/// Calibrates tip, hand-eye and trocar at this arm and compares them with the truth.
 fn instrument(side: Side) {
     let mut bench = Bench::new(side, None);
     let tip = bench.run(Tip::by_arm(), Task::Tip, 150.0, |_| Prompt::PivotInDimple);
@@ -133,7 +134,7 @@ fn instrument(side: Side) {
 }
 
 impl Bench {
-    /// Where the tracker sees the tip against where it is, in the pose of the arm now.
+    /// Distance between the tracker's and the true position of the tip, in the current pose of the arm.
     fn hand_eye_misses(&mut self, flange_from_m: &Isometry3<f64>, base_from_c: &Isometry3<f64>) -> [f64; 2] {
         let truth = self.world.truth(self.t_s);
         let base = self.arm.world_from_base().inverse();
@@ -160,7 +161,7 @@ fn tip_hand_eye_and_trocar_of_the_left_arm_are_found() {
     instrument(Side::Left);
 }
 
-/// The first direction of gravity that no pose has yet.
+/// Returns the first direction of gravity that has no pose yet.
 fn untaken(session: &FrameSession<SensorMount>, flange_from_s1: &UnitQuaternion<f64>, up: &Vector3<f64>) -> PoseTarget {
     let taken = session.samples().iter().filter_map(|sample| sample.base_from_flange);
     let down_s1: Vec<_> = taken.map(|pose| -((pose.rotation * flange_from_s1).inverse() * up)).collect();

@@ -1,8 +1,8 @@
-//! Hand guiding: joint angles (rad) for how a person holds the tool.
+//! Hand guiding: joint angles (rad) for the way in which a person holds the tool.
 //!
-//! A person determines the tilt of the tool, or where its tip is and where the shaft points; the arm, whose brakes are
-//! open, takes whatever joint angles that needs. Damped least squares; a joint at its limit is left out, and the freedom
-//! that remains pulls the joints towards a comfortable pose. Lengths in m, in `world`.
+//! A person determines the tilt of the tool, or the position of its tip and the direction of its shaft; the arm, whose
+//! brakes are open, takes the required joint angles. Damped least squares; a joint at its limit is left out, and the
+//! remaining freedom pulls the joints towards a comfortable pose. Lengths in m, in `world`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -17,22 +17,22 @@ const LENGTH_M: f64 = 0.3;
 const DAMPING: f64 = 1e-4;
 /// A person stays this far from a joint's limit, rad.
 const KEEP_OFF_RAD: f64 = 0.1;
-/// Share of the way to the comfortable pose in one second.
+/// Fraction of the distance to the comfortable pose covered in one second.
 const COMFORT_PER_S: f64 = 0.5;
-/// The search: random starts, steps from each, longest step, rad, and the miss at which it ends, m.
+/// The search: number of random starts, steps from each, maximum step, rad, and the miss at which it ends, m.
 const STARTS: usize = 40;
 const STEPS: usize = 150;
 const LONGEST_RAD: f64 = 0.25;
 const CLOSE_M: f64 = 1e-5;
 
-/// How a person holds the tool.
+/// The way in which a person holds the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Hold {
-    /// Gravity acts in this direction of the sensor (unit, `s1`); where the tool is does not matter.
+    /// Gravity acts in this direction of the sensor (unit, `s1`); the position of the tool does not matter.
     Tilt(Vector3<f64>),
-    /// The tip is here, and the shaft points in this direction (unit); its rotation about itself does not matter.
+    /// The tip is here, and the shaft points in this direction (unit); rotation about the shaft does not matter.
     Tip { tip_m: Vector3<f64>, along: Vector3<f64> },
-    /// The tip is here, and the tool is turned like this, also about its shaft.
+    /// The tip is here, and the tool has this orientation, including its rotation about the shaft.
     Pose { tip_m: Vector3<f64>, world_from_s1: UnitQuaternion<f64> },
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Guide {
     comfort_rad: Joints,
 }
 
-/// Conditions of a hold at most; rows that a hold does not need are zero.
+/// Maximum number of conditions of a hold; unused rows are zero.
 const CONDITIONS: usize = 6;
 type Rows = SMatrix<f64, CONDITIONS, JOINTS>;
 type Miss = SVector<f64, CONDITIONS>;
@@ -54,7 +54,7 @@ impl Guide {
         Self { arm, comfort_rad }
     }
 
-    /// Guides the joints towards this hold for `dt_s`, at most as fast as they can move; returns what is still missing, m.
+    /// Guides the joints towards this hold for `dt_s`, limited by their speed; returns the remaining error, m.
     pub(super) fn step(&self, joint_rad: &mut Joints, hold: &Hold, dt_s: f64) -> f64 {
         let (step_rad, miss_m) = self.towards(joint_rad, hold, COMFORT_PER_S * dt_s);
         let share = step_rad.iter().zip(SPEED_RAD_S).map(|(step, most)| step.abs() / (most * dt_s)).fold(1.0, f64::max);
@@ -62,7 +62,7 @@ impl Guide {
         miss_m
     }
 
-    /// Joint angles for this hold with the shortest way from `from_rad`; `None` if the arm cannot take it.
+    /// Returns the joint angles for this hold that are closest to `from_rad`; `None` if the arm cannot take it.
     pub(super) fn find(&self, from_rad: &Joints, hold: &Hold) -> Option<Joints> {
         let mut noise = Noise::new(0x6a_1d);
         let mut random = || Joints::from_fn(|joint, _| (2.0 * noise.uniform() - 1.0) * LIMIT_RAD[joint].min(PI));
@@ -71,7 +71,7 @@ impl Guide {
         found.min_by(|a, b| (a - from_rad).amax().total_cmp(&(b - from_rad).amax()))
     }
 
-    /// Whether the arm comes to this hold from here without taking another pose first.
+    /// Whether the arm can move to this hold from here without taking another pose first.
     pub(super) fn reaches(&self, from_rad: &Joints, hold: &Hold) -> bool {
         self.converged(*from_rad, hold).is_some()
     }
@@ -88,7 +88,8 @@ impl Guide {
         None
     }
 
-    /// The step to this hold, with a share of the way to the comfortable pose in the freedom that remains, and the miss.
+    /// Returns the step to this hold, with a fraction of the distance to the comfortable pose in the remaining freedom,
+    /// and the error.
     fn towards(&self, joint_rad: &Joints, hold: &Hold, comfort: f64) -> (Joints, f64) {
         let (rows, miss) = missing(&self.arm.pose(joint_rad), hold);
         let relaxed = nearest_turn(joint_rad, &self.comfort_rad) - joint_rad;
@@ -113,7 +114,7 @@ impl Guide {
     }
 }
 
-/// What a step of each joint changes, and what is missing: rotations times [`LENGTH_M`], m.
+/// Returns the effect of each joint's step, and the remaining error: rotations times [`LENGTH_M`], m.
 fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
     let jacobian = pose.chain.jacobian(&pose.tip_m);
     let place = jacobian.fixed_rows::<3>(0);
@@ -149,7 +150,7 @@ fn missing(pose: &Pose, hold: &Hold) -> (Rows, Miss) {
     (rows, miss)
 }
 
-/// Least squares with the joints that are free; the rest of the freedom follows `relaxed`.
+/// Least squares with the free joints; the remaining freedom follows `relaxed`.
 fn solve(rows: &Rows, miss: &Miss, relaxed: &Joints, free: [bool; JOINTS]) -> Joints {
     let mut rows = *rows;
     let mut relaxed = *relaxed;
@@ -161,7 +162,8 @@ fn solve(rows: &Rows, miss: &Miss, relaxed: &Joints, free: [bool; JOINTS]) -> Jo
     square.cholesky().map_or_else(Joints::zeros, |c| relaxed + rows.transpose() * c.solve(&(miss - rows * relaxed)))
 }
 
-/// Rotation vector, rad, that turns one unit vector into another; for opposite ones, half a turn about a level axis.
+/// Rotation vector, rad, that rotates one unit vector into another; for opposite ones, half a turn about a horizontal
+/// axis.
 fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
     let axis = from.cross(to);
     let cos = from.dot(to);
@@ -172,7 +174,7 @@ fn rotation(from: &Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
     if cos > 0.0 { Vector3::zeros() } else { Vector3::x() * PI }
 }
 
-/// The same pose with the joints that turn without end in the turn nearest to `from_rad`.
+/// Returns the same pose, with each continuous joint in the turn nearest to `from_rad`.
 pub(super) fn nearest_turn(from_rad: &Joints, joint_rad: &Joints) -> Joints {
     Joints::from_fn(|joint, _| {
         let from = from_rad[joint];

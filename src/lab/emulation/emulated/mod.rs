@@ -1,11 +1,13 @@
-//! An emulated rig: an emulator for every device of a rig file, at its place, all around one simulated world per side.
+//! An emulated rig: an emulator for every device of a rig file, at its address, all around one simulated world per
+//! side.
 //!
-//! Takes what the rig file says of the devices and a scene; gives devices on real wires (pseudo-terminals, TCP, UDP, the handle's
-//! library), which the real drivers open; for the handles their program first calls [`provide_handles`]. Move the emulated handle and the arm that follows it presses the tissue, and the
-//! sensor feels it. Where the sensors sit at the wrists, a simulated technician obeys the calibrations' instructions:
-//! [`EmulatedRig::technician`] takes what the screen shows him. Frames: everything inside is in `world`; each device tells in its
-//! own. Needs Unix; the pedal needs Linux. Bad input: what cannot be emulated here (another computer's address) is refused in one
-//! line.
+//! Takes the devices of a rig file and a scene; provides devices on real connections (pseudo-terminals, TCP, UDP, the
+//! handle's library), which the real drivers open. A program with emulated handles first calls [`provide_handles`].
+//! When the emulated handle moves, the arm that follows it presses the tissue, and the sensor measures the force. If
+//! the sensors sit at the wrists, a simulated technician follows the calibrations' instructions:
+//! [`EmulatedRig::technician`] receives the content of the screen. Frames: everything inside is in `world`; each device
+//! reports in its own frame. Needs Unix; the pedal needs Linux. A device that cannot be emulated here (for example at
+//! another computer's address) is refused in one line.
 
 mod clocked;
 mod errors;
@@ -55,17 +57,16 @@ use nima_simulation::{
     screen::{Screen, Task},
 };
 
-/// How a side's handle stands to the workspace: the inverse of the rig's mapping from hand to tip.
+/// Relation of a side's handle to the workspace: the inverse of the rig's mapping from hand to tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandFrame {
-    /// From the workspace to the handle's own frame.
+    /// Rotation from the workspace to the handle's own frame.
     pub leader_from_world: UnitQuaternion<f64>,
-    /// The tip's way per way of the hand.
+    /// Travel of the tip per travel of the hand.
     pub scale: f64,
 }
 
 impl HandFrame {
-    /// The inverse of a rig's mapping.
     pub fn of(mapping: &Mapping) -> Self {
         Self { leader_from_world: mapping.world_from_leader().inverse(), scale: mapping.scale() }
     }
@@ -77,78 +78,50 @@ impl Default for HandFrame {
     }
 }
 
-/// Why a rig cannot be emulated.
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatedRigError {
     /// The rig has no arm pair.
-    #[error("this rig names no arm pair to emulate: give it [devices.right], or use the rig `emulated`")]
+    #[error("cannot emulate this rig: it has no arm pair; add [devices.right], or use the rig `emulated`")]
     NoArm,
-    /// There is no emulator for this make.
-    #[error("the {device} cannot be emulated: there is no emulator for its `make`")]
-    Make {
-        /// Its name in the rig.
-        device: String,
-    },
-    /// The place is not on this computer.
-    #[error("the {device} cannot be emulated at \"{place}\": {wanted}")]
+    #[error("cannot emulate the {device}: there is no emulator for its `make`; use another make")]
+    Make { device: String },
+    /// The address is not on this computer.
+    #[error("cannot emulate the {device} at \"{place}\": {wanted}")]
     Place {
-        /// Its name in the rig.
         device: String,
-        /// As the rig file has it.
         place: String,
-        /// What it must be.
+        /// The required form.
         wanted: &'static str,
     },
     /// The scene that describes the paper's rig.
-    #[error("the paper's rig is not known")]
+    #[error("cannot load the paper's rig")]
     Paper(#[from] ConfigError),
-    /// The rig file says something impossible.
-    #[error("the rig cannot be emulated")]
+    #[error("cannot emulate the rig")]
     Settings(#[from] Trouble),
     /// The arm's mount is impossible.
-    #[error("the {device} cannot be mounted so")]
-    Mount {
-        /// Its name in the rig.
-        device: String,
-        /// Why.
-        source: ArmError,
-    },
+    #[error("the mount of the {device} is impossible; correct it in the rig file")]
+    Mount { device: String, source: ArmError },
     /// The trocar is impossible.
-    #[error("the trocar of the {device} is not possible")]
-    Trocar {
-        /// Name of the arm.
-        device: String,
-        /// Why.
-        source: RcmError,
-    },
-    /// The arm has no pose for where the hand begins.
-    #[error("the {device} cannot begin where the scene's hand does")]
-    Ready {
-        /// Its name in the rig.
-        device: String,
-        /// Why.
-        source: ReadyError,
-    },
-    /// The place cannot be served.
-    #[error("the {device} cannot be emulated")]
-    Serve {
-        /// Its name in the rig.
-        device: String,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error("the trocar of the {device} is impossible; correct it in the rig file")]
+    Trocar { device: String, source: RcmError },
+    /// The arm cannot reach the start position of the hand.
+    #[error("the {device} cannot reach the start position of the scene's hand")]
+    Ready { device: String, source: ReadyError },
+    /// The emulator cannot be started.
+    #[error("cannot emulate the {device}")]
+    Serve { device: String, source: std::io::Error },
 }
 
-/// One device that is emulated.
+/// An emulated device.
 #[derive(Debug)]
 pub struct EmulatedDevice {
-    /// Its name in the rig: `right sensor`.
+    /// Its name in the rig, such as `right sensor`.
     pub name: String,
     /// Its endpoint and its faults.
     pub serving: Serving,
 }
 
-/// The world of a side, shared by its emulators, and the clock that all sides have.
+/// The world of a side, shared by its emulators, and the clock shared by all sides.
 #[derive(Clone)]
 struct Shared {
     begin: Instant,
@@ -162,13 +135,13 @@ impl Shared {
     }
 }
 
-/// All devices of a rig, emulated. Dropping it ends them all.
+/// All devices of a rig, emulated. Dropping it stops them all.
 pub struct EmulatedRig {
     devices: Vec<EmulatedDevice>,
     sides: [Option<Shared>; SIDES],
     pedal: Arc<AtomicU32>,
     markers_exchanged: Arc<AtomicBool>,
-    /// The fault of the endoscope, on which the tracker's marker is, once its picture is served.
+    /// The fault of the endoscope, which carries the tracker's marker, once its image is served.
     endoscope: Arc<OnceLock<FaultSwitch>>,
 }
 
@@ -178,21 +151,21 @@ impl std::fmt::Debug for EmulatedRig {
     }
 }
 
-/// Knows what only a simulation knows, from any thread.
+/// Reads the simulation's true state, from any thread.
 #[derive(Clone)]
 pub struct Witness {
     sides: [Option<Shared>; SIDES],
 }
 
 impl Witness {
-    /// The truth of a side now; `None` where the rig has none.
+    /// Returns the current true state of a side; `None` if the rig does not have it.
     pub fn truth(&self, side: Side) -> Option<Truth> {
         self.sides[side.index()].as_ref().map(|shared| shared.with(SideWorld::truth))
     }
 }
 
-/// The simulated technician, who reads the screen: whoever shows instructions tells him. He goes to the arm that is
-/// calibrated, and away from the other one.
+/// The simulated technician. The program that shows instructions passes them on. The technician goes to the arm that is
+/// being calibrated, and leaves the other one.
 #[derive(Clone)]
 pub struct Technician {
     sides: [Option<Shared>; SIDES],
@@ -205,7 +178,7 @@ impl std::fmt::Debug for Technician {
 }
 
 impl Technician {
-    /// He reads what the screen shows now.
+    /// Updates the content of the screen.
     pub fn reads(&self, screen: &Screen) {
         for (side, shared) in Side::ALL.into_iter().zip(&self.sides) {
             let here = side == screen.side;
@@ -218,11 +191,11 @@ impl Technician {
 }
 
 impl EmulatedRig {
-    /// Starts an emulator for every device in `devices`, at its place. `hands` tells, in the order of [`Side::ALL`], how the
-    /// handles stand to the workspace. Takes under a second, for the arms' poses.
+    /// Starts an emulator for every device in `devices`, at its address. `hands`, in the order of [`Side::ALL`],
+    /// describes the relation of the handles to the workspace. Takes less than a second, for the arms' poses.
     ///
     /// # Errors
-    /// When a place is taken or not on this computer, or arm, trocar and scene do not fit together.
+    /// If an address is in use or not on this computer, or arm, trocar and scene do not fit together.
     pub fn start(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<Self, EmulatedRigError> {
         let begin = Instant::now();
         let sides = sides(devices, scene, hands)?;
@@ -234,24 +207,24 @@ impl EmulatedRig {
         Ok(Self { devices, sides, pedal, markers_exchanged, endoscope })
     }
 
-    /// Everything that serves.
+    /// The running emulators.
     pub fn servings(&self) -> &[EmulatedDevice] {
         &self.devices
     }
 
-    /// Sets the fault of a device by its name, with blanks or dashes (`right-sensor`); false where there is none.
+    /// Sets the fault of a device by its name, with blanks or dashes (`right-sensor`); false if there is no such
+    /// device.
     pub fn set_fault(&self, name: &str, fault: EmulatedFault) -> bool {
         let plain = name.replace('-', " ");
         let device = self.devices.iter().find(|device| device.name == plain);
         device.map(|device| device.serving.faults.set(fault)).is_some()
     }
 
-    /// The technician at the arms.
     pub fn technician(&self) -> Technician {
         Technician { sides: self.sides.clone() }
     }
 
-    /// Presses the pedal's switches, first in the lowest bit, until told otherwise.
+    /// Presses the pedal's switches, the first in the lowest bit, until the next call.
     pub fn press(&self, switches: u32) {
         self.pedal.store(switches, Ordering::Release);
     }
@@ -261,12 +234,12 @@ impl EmulatedRig {
         self.markers_exchanged.fetch_xor(true, Ordering::AcqRel);
     }
 
-    /// What only a simulation knows of a side; `None` where the rig has none.
+    /// Returns the true state of a side; `None` if the rig does not have it.
     pub fn truth(&self, side: Side) -> Option<Truth> {
         self.witness().truth(side)
     }
 
-    /// The same, from any thread.
+    /// Returns access to the true state from any thread.
     pub fn witness(&self) -> Witness {
         Witness { sides: self.sides.clone() }
     }
@@ -274,7 +247,7 @@ impl EmulatedRig {
 
 type Sides = [Option<SideWorld>; SIDES];
 
-/// The worlds, both arms' poses sought at once: each takes some hundred milliseconds.
+/// Makes the worlds and searches for both arms' poses in parallel: each takes some hundred milliseconds.
 fn sides(devices: &Settings, scene: &Scene, hands: &[HandFrame; SIDES]) -> Result<Sides, EmulatedRigError> {
     if Side::ALL.iter().all(|side| devices.arm(*side).is_none()) {
         return Err(EmulatedRigError::NoArm);

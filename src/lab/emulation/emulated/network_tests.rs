@@ -1,4 +1,4 @@
-//! What flaws of real devices make of the network that infers the force at the tip, in virtual time.
+//! Effects of real devices' flaws on the network that infers the force at the tip, in virtual time.
 
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
@@ -13,14 +13,14 @@ use nima_simulation::screen::Task;
 
 use super::tests::{Bench, FLAWS, Fitted, fitted, live};
 
-/// Rows that the wizard asks for, and those of its check: in contact, then without.
+/// Rows required by the wizard, and rows of its check: in contact, then without.
 const ROWS: usize = 16_000;
 const CHECK: [usize; 2] = [5000, 2000];
-/// After so many rows comes a spell of so many without contact.
+/// After this many rows in contact there are this many without.
 const SPELL: [usize; 2] = [3000, 900];
 const TICKS_MAX: usize = 300_000;
 
-/// Records until there are so many rows; `is_free` says of a row whether the technician is asked to touch nothing.
+/// Records until there are this many rows; `is_free` returns whether the technician is asked to avoid contact in a row.
 fn recorded(
     bench: &mut Bench,
     fitted: &Fitted,
@@ -47,7 +47,7 @@ fn recorded(
     DataSet::parse(&[(PathBuf::from("virtual.csv"), text)], &Selection::default()).unwrap()
 }
 
-/// Records, trains and checks as the wizard does; `None` where gravity or correspondence were refused.
+/// Records, trains and checks like the wizard; `None` if gravity or correspondence were refused.
 fn checked(flaws: Flaws) -> Option<Check> {
     let (mut bench, fitted) = fitted(flaws)?;
     let known = fitted.correspondence?;
@@ -59,7 +59,7 @@ fn checked(flaws: Flaws) -> Option<Check> {
     Some(check)
 }
 
-/// Prints a column of the table of flaws in docs/devices.md.
+/// Prints a column of the table of flaws in docs/results/devices.md.
 #[test]
 #[ignore = "minutes: trains a network for each flaw; `./dev figures` runs it"]
 fn figures_of_flaws_and_the_network() {

@@ -1,4 +1,4 @@
-//! The picture of the rig's endoscope: both instruments of the simulated world, where they really are.
+//! The image of the rig's endoscope: both instruments of the simulated world at their true positions.
 
 use nima_endoscope::{Address, Endpoint};
 use nima_machine::{
@@ -13,10 +13,10 @@ use crate::emulators::endoscope::{BASELINE_M, Emulated, Instrument};
 const NAME: &str = "endoscope";
 
 impl EmulatedRig {
-    /// Also serves the endoscope's picture at its address, seen by the rig file's camera, or by the usual one of the scene.
+    /// Also serves the endoscope image at its address, seen by the rig file's camera, or by the scene's default camera.
     ///
     /// # Errors
-    /// When the address is not on this computer, or its port is taken.
+    /// If the address is not on this computer, or its port is in use.
     pub fn show(&mut self, endoscope: &Endoscope, devices: &Settings, scene: &Scene) -> Result<(), EmulatedRigError> {
         let place = |wanted| EmulatedRigError::Place { device: NAME.to_owned(), place: endoscope.url.clone(), wanted };
         let Ok(Address::Http(Endpoint { host, port, .. })) = endoscope.url.parse() else {

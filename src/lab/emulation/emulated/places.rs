@@ -1,4 +1,4 @@
-//! Places of a rig file, as far as they are on this computer.
+//! Addresses in a rig file that are on this computer.
 
 use std::net::{IpAddr, Ipv4Addr};
 
@@ -8,7 +8,7 @@ fn wrong(device: &str, place: &str, wanted: &'static str) -> EmulatedRigError {
     EmulatedRigError::Place { device: device.to_owned(), place: place.to_owned(), wanted }
 }
 
-/// This host is this computer.
+/// Checks that this host is this computer.
 pub(super) fn local(device: &str, host: &str) -> Result<(), EmulatedRigError> {
     if host == "localhost" || host.parse() == Ok(IpAddr::V4(Ipv4Addr::LOCALHOST)) {
         return Ok(());
@@ -16,14 +16,14 @@ pub(super) fn local(device: &str, host: &str) -> Result<(), EmulatedRigError> {
     Err(wrong(device, host, "it must be 127.0.0.1 for an emulator on this computer"))
 }
 
-/// The port of `127.0.0.1:PORT`, or `usual` where none is given.
+/// Returns the port of `127.0.0.1:PORT`, or `usual` if there is none.
 pub(super) fn port(device: &str, address: &str, usual: u16) -> Result<u16, EmulatedRigError> {
     let (host, port) = address.rsplit_once(':').map_or((address, None), |(host, port)| (host, Some(port)));
     local(device, host)?;
     port.map_or(Ok(usual), |port| port.parse().map_err(|_| wrong(device, address, "it must be 127.0.0.1:PORT")))
 }
 
-/// The path of a pedal's `emulated:PATH`.
+/// Returns the path of a pedal's `emulated:PATH`.
 #[cfg(any(target_os = "linux", test))]
 pub(super) fn pedal<'a>(device: &str, source: &'a str) -> Result<&'a str, EmulatedRigError> {
     let path = source.strip_prefix("emulated:").filter(|path| !path.is_empty());

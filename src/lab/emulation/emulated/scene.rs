@@ -1,8 +1,8 @@
-//! A scene made fit for one side of an emulated rig: the rig decides what stands between arm and tissue.
+//! Adapts a scene to one side of an emulated rig: the rig determines the equipment between arm and tissue.
 //!
-//! With `sensor_at = "tip"` a sensor feels the tissue alone, whatever the scene says of a wrist. With `"wrist"` a scene that
-//! says nothing of a wrist gets the paper's: sensor, tool, trocar with friction, and the sensor under the tissue, as the
-//! scene `isolation` describes them. No two sensors are alike: the left one has its own bias, gains and accelerometer.
+//! With `sensor_at = "tip"` a sensor measures only the tissue, whatever the scene has at the wrist. With `"wrist"` a
+//! scene without a wrist gets the paper's: sensor, tool, trocar with friction, and the sensor under the tissue, as in
+//! the scene `isolation`. No two sensors are alike: the left one has its own bias, gains and accelerometer.
 
 use nalgebra::Vector3;
 use nima_machine::rig::{ArmSet, SensorPlace, Side};
@@ -13,8 +13,8 @@ use super::EmulatedRigError;
 /// The scene that describes the paper's rig.
 const PAPER: &str = "isolation";
 
-/// The scene as this side sees it: the left one mirrored where it has no part of its own; trocar, shaft and marker are the
-/// rig's own.
+/// Returns the scene as seen by this side: mirrored for a left side without its own part, with the rig's trocar, shaft
+/// and marker.
 pub(super) fn of_side(scene: &Scene, side: Side, set: &ArmSet) -> Result<Scene, EmulatedRigError> {
     let mut scene = scene.clone().with_left_hand().of_side(side).unwrap_or_else(|| scene.clone());
     scene.trocar_m = set.rcm.trocar_m;

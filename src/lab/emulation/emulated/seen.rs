@@ -1,4 +1,4 @@
-//! What the tracker's camera sees of a side's marker and of the endoscope's.
+//! The tracker camera's view of a side's marker and of the endoscope's.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{frames::from_roll_pitch_yaw_deg, noise::Noise};
@@ -10,18 +10,19 @@ use crate::emulators::endoscope::push;
 
 /// Distance of the camera from the workspace's middle, m.
 const CAMERA_M: f64 = 1.5;
-/// Where it looks from where no scene says: level along the workspace's y (roll, pitch, yaw of `world_from_c`, degrees).
+/// Viewing direction if the scene does not set it: horizontal along the workspace's y (roll, pitch, yaw of
+/// `world_from_c`, degrees).
 const CAMERA_DEG: Vector3<f64> = Vector3::new(90.0, 0.0, 0.0);
-/// The marker sits so far down the shaft from the wrist sensor, m.
+/// Distance of the marker from the wrist sensor, down the shaft, m.
 const MARKER_M: f64 = 0.08;
-/// Where the marker on the endoscope is before somebody pushes it: on its shaft outside of the patient, m.
+/// Position of the endoscope's marker before the endoscope is pushed: on its shaft outside the patient, m.
 const ENDOSCOPE_M: Vector3<f64> = Vector3::new(0.0, -0.25, 0.26);
-/// Noise of a marker's place per axis, m.
+/// Noise of a marker's position per axis, m.
 const MARKER_NOISE_M: f64 = 0.000_25;
-/// Residual of a marker that is well seen, m.
+/// Residual of a marker in good view, m.
 const MARKER_ERROR_M: f64 = 0.000_15;
 
-/// Where the camera is, and how the marker sits on the instrument.
+/// Pose of the camera, and mounting of the marker on the instrument.
 #[derive(Clone, Debug)]
 pub(super) struct Camera {
     c_from_world: UnitQuaternion<f64>,
@@ -30,7 +31,7 @@ pub(super) struct Camera {
 }
 
 impl Camera {
-    /// For a scene that has been made fit for its side.
+    /// Makes the camera for a scene adapted to its side.
     pub(super) fn new(scene: &Scene, set: &ArmSet) -> Self {
         let camera_deg = scene.tissue_sensor.map_or(CAMERA_DEG, |sensor| sensor.world_from_c_deg);
         let marker_deg = set.s1_from_m_deg.unwrap_or_else(Vector3::zeros);
@@ -61,8 +62,8 @@ impl Camera {
         Vector3::from_fn(|_, _| MARKER_NOISE_M * self.noise.gaussian())
     }
 
-    /// The marker on an instrument whose wrist sensor is turned like this, with its origin here (m); `noisy` is its
-    /// orientation (`c_from_m`) with the tracker's noise, if the scene has it.
+    /// Returns the marker on an instrument whose wrist sensor has this orientation and position (m); `noisy` is the
+    /// marker's orientation (`c_from_m`) with the tracker's noise, if the scene has it.
     pub(super) fn marker(
         &mut self,
         world_from_s1: &UnitQuaternion<f64>,
@@ -75,7 +76,8 @@ impl Camera {
         seen(c_from_m, self.c_from_world * marker_m + miss_m)
     }
 
-    /// The true frames that a hand-eye calibration finds: the marker in the wrist sensor's frame, and the camera in the workspace.
+    /// Returns the true frames that a hand-eye calibration determines: the marker in the wrist sensor's frame, and the
+    /// camera in the workspace.
     pub(super) fn truth(&self) -> [Isometry3<f64>; 2] {
         let marker_m = Vector3::new(0.0, 0.0, MARKER_M);
         let world_from_c = self.c_from_world.inverse();
@@ -84,7 +86,7 @@ impl Camera {
     }
 }
 
-/// At this place as seen from the middle of the workspace, m; the camera looks along its own -z.
+/// A tool at this position relative to the middle of the workspace, m; the camera looks along its own -z.
 fn seen(c_from_tool: UnitQuaternion<f64>, from_middle_m: Vector3<f64>) -> Tracked {
     Tracked::Seen {
         c_from_tool,

@@ -22,10 +22,11 @@ use crate::emulators::{self, EmulatedFault, Emulator, FaultSwitch};
 type Sides = [Option<Shared>; SIDES];
 type Served = Result<EmulatedDevice, EmulatedRigError>;
 
-/// How the cables of the instrument pull at a servo, Nm/rad, and where they rest, rad: guesses of the right size.
+/// Stiffness of the instrument's cables at a servo, Nm/rad, and their rest angle, rad: guesses of a realistic
+/// magnitude.
 const CABLES_NM_PER_RAD: f64 = 0.3;
 const CABLES_REST_RAD: f64 = 0.3;
-/// A first-generation sensor needs so long to start, s: as short as leaves all of its steps visible.
+/// Start-up time of a first-generation sensor, s: short, but with all of its steps visible.
 const BOOT_S: f64 = 0.2;
 /// The sensor under the tissue is at room temperature, degrees Celsius.
 const ROOM_C: f64 = 24.0;
@@ -37,7 +38,7 @@ fn served(device: String, emulator: Box<dyn Emulator>) -> Served {
     }
 }
 
-/// Every device of the rig.
+/// Starts every device of the rig.
 pub(super) fn all(
     settings: &Settings,
     sides: &Sides,
@@ -83,7 +84,7 @@ fn handle(side: Side, set: &ArmSet, shared: &Shared) -> Served {
     let usual = emulators::force_dimension::Emulated::default();
     let emulated = emulators::force_dimension::Emulated {
         serial: chosen.serial.unwrap_or(usual.serial + side.index() as u16),
-        // As the rig file has it, which may have the left one on the right side on purpose.
+        // Taken from the rig file, which may deliberately have the left-handed device on the right side.
         kind: force_dimension::Kind::Omega7 { left_handed },
         port: address.port(),
         ..usual
@@ -197,7 +198,7 @@ fn tracker(
     served(name, emulator)
 }
 
-/// The emulated unit takes any definition; where the rig names one that is not there, this is it.
+/// The emulated unit accepts any tool definition; if the rig names a missing file, this creates it.
 fn define(path: &Path) -> std::io::Result<()> {
     if path.exists() {
         return Ok(());

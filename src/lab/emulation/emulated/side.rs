@@ -1,8 +1,8 @@
-//! One side's world with an arm of joints in it: what every emulator of the side asks.
+//! One side's world with a jointed arm in it: the data source of every emulator of the side.
 //!
-//! Time is the common clock's (s); the world goes on by fixed steps of 1 ms up to it whenever anybody asks. Positions in m, forces in N,
-//! in `world` unless the name says another. The joints follow what is asked of the arm as the simulated follower follows its command,
-//! or, while its drives are off, the hands of the technician.
+//! Time is that of the common clock (s); the world advances by fixed steps of 1 ms up to it whenever an emulator reads
+//! it. Positions in m, forces in N, in `world` unless the name says otherwise. The joints follow the arm's commands
+//! like the simulated follower or, while its drives are off, the hands of the technician.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -22,31 +22,30 @@ use crate::emulators::{
 
 /// One step of the world, s.
 const STEP_S: f64 = 1e-3;
-/// Steps made up for after a pause of the whole process; what is older never happened.
+/// Maximum number of steps made up after a pause of the whole process; earlier time is skipped.
 const CATCH_UP_STEPS: u64 = 100;
-/// How far the handle turns by itself, rad, and how fast, rad/s: no hand is a rock.
+/// Natural rotation of the handle, rad, and its speed, rad/s: no hand is perfectly still.
 const HANDLE_WAVE: (f64, f64) = (0.05, 0.9);
-/// How far the gripper is open, rad.
+/// Opening of the gripper, rad.
 const GRIPPER_RAD: f64 = 0.2;
-/// Housing of a sensor that has been on for a while, degrees Celsius.
+/// Housing temperature of a sensor that has been on for a while, degrees Celsius.
 const SENSOR_C: f64 = 31.0;
 
-/// What only a simulation knows of a side.
+/// The true state of a side, known only in a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
-    /// Where the tip is, m.
+    /// Position of the tip, m.
     pub tip_m: Vector3<f64>,
     /// Force of the tissue on it, N.
     pub tip_n: Vector3<f64>,
-    /// Where the hand is, m.
+    /// Position of the hand, m.
     pub hand_m: Vector3<f64>,
-    /// Angles of the arm's joints, rad.
     pub joint_rad: [f64; ARM_JOINTS],
-    /// How the wrist sensor is turned.
+    /// Orientation of the wrist sensor.
     pub world_from_s1: UnitQuaternion<f64>,
-    /// What the motors of the handle do.
+    /// Commands of the handle's motors.
     pub applied: Applied,
-    /// The arm moves as it is asked to; else it holds.
+    /// Whether the arm follows commands; otherwise it holds.
     pub servoing: bool,
     /// The marker in the wrist sensor's frame.
     pub s1_from_m: Isometry3<f64>,
@@ -54,17 +53,16 @@ pub struct Truth {
     pub world_from_c: Isometry3<f64>,
 }
 
-/// How the endoscope's picture is turned.
+/// Returns the orientation of the endoscope image.
 fn world_from_view(hand: &HandFrame) -> UnitQuaternion<f64> {
     (view_from_omega() * hand.leader_from_world).inverse()
 }
 
-/// The world of one side.
 #[derive(Clone, Debug)]
 pub(super) struct SideWorld {
     world: World,
     arm: Arm,
-    /// Angular frequency with which joints follow, rad/s; none: they are where they are asked to be.
+    /// Natural angular frequency of the joints; `None` if they are always at their command.
     omega: Option<f64>,
     body: BodyState,
     asked: Asked,
@@ -78,17 +76,17 @@ pub(super) struct SideWorld {
     world_from_s1: UnitQuaternion<f64>,
     turn_rad_s: Vector3<f64>,
     tip_m: Vector3<f64>,
-    /// Where the hand is, as its handle measures it.
+    /// Position of the hand, as measured by its handle.
     hand_m: Vector3<f64>,
     sensed: Sensed,
-    /// Steps due by the common clock that were made or dropped.
+    /// Number of due steps, by the common clock, that were made or skipped.
     reached: u64,
     /// Steps made.
     made: u64,
 }
 
 impl SideWorld {
-    /// The world of a scene that has been made fit for this side, with the arm at these angles.
+    /// The world of a scene adapted to this side, with the arm at these angles.
     pub(super) fn new(
         scene: &Scene,
         set: &ArmSet,
@@ -127,7 +125,7 @@ impl SideWorld {
         side
     }
 
-    /// Goes on to `now_s` of the common clock.
+    /// Advances to `now_s` of the common clock.
     pub(super) fn advance(&mut self, now_s: f64) {
         let due = (now_s / STEP_S) as u64;
         self.reached = self.reached.max(due.saturating_sub(CATCH_UP_STEPS));
@@ -137,14 +135,14 @@ impl SideWorld {
         }
     }
 
-    /// What the base of the arm asks from now on; how the arm is.
+    /// Sets the command of the arm's base from now on; returns the state of the arm.
     pub(super) fn ask(&mut self, now_s: f64, asked: &Asked) -> BodyState {
         self.advance(now_s);
         self.asked = *asked;
         BodyState { joint_rad: self.flawed.encoders(&self.body.joint_rad), ..self.body }
     }
 
-    /// What the motors of the handle do from now on; where it is, in its own frame.
+    /// Sets the output of the handle's motors from now on; returns the handle's pose in its own frame.
     pub(super) fn hold(&mut self, now_s: f64, applied: &Applied) -> HandState {
         self.advance(now_s);
         self.applied = *applied;
@@ -163,7 +161,7 @@ impl SideWorld {
         }
     }
 
-    /// What the sensor between arm and instrument reads, in its own frame.
+    /// Returns the reading of the sensor between arm and instrument, in its own frame.
     pub(super) fn feel(&mut self, now_s: f64) -> ForceReading {
         self.advance(now_s);
         let s1_from_world = self.world_from_s1.inverse();
@@ -184,13 +182,13 @@ impl SideWorld {
         }
     }
 
-    /// Share of this side in what the sensor under the tissue reads, N.
+    /// Returns this side's contribution to the reading of the sensor under the tissue, N.
     pub(super) fn press(&mut self, now_s: f64) -> Vector3<f64> {
         self.advance(now_s);
         self.sensed.wrist().and_then(|sample| sample.tissue_n).unwrap_or_else(|| self.world.true_tip_n())
     }
 
-    /// What the tracker tells of the marker on the instrument.
+    /// Returns the tracker's reading of the marker on the instrument.
     pub(super) fn marker(&mut self, now_s: f64) -> Tracked {
         self.advance(now_s);
         let noisy = self.sensed.wrist().and_then(|sample| sample.m_from_c).map(|m_from_c| m_from_c.inverse());
@@ -199,13 +197,13 @@ impl SideWorld {
         self.flawed.tracked(now_s, marker)
     }
 
-    /// What it tells of the marker on the endoscope, which stands still unless somebody has pushed it. An Omega stands below the endoscope's
-    /// picture, and the hand goes the picture's ways.
+    /// Returns the tracker's reading of the endoscope's marker, which does not move unless the endoscope was pushed. An
+    /// Omega is aligned with the endoscope image, and the hand moves in the image's directions.
     pub(super) fn endoscope(&mut self, endoscope: &EndoscopeSettings, is_moved: bool) -> Tracked {
         self.camera.endoscope(&world_from_view(&self.hand), endoscope, is_moved)
     }
 
-    /// What only a simulation knows.
+    /// Returns the true state.
     pub(super) fn truth(&mut self, now_s: f64) -> Truth {
         self.advance(now_s);
         let [s1_from_m, world_from_c] = self.camera.truth();
@@ -222,7 +220,7 @@ impl SideWorld {
         }
     }
 
-    /// The technician reads the screen.
+    /// Passes the content of the screen to the technician.
     pub(super) fn reads(&mut self, now_s: f64, task: Task, prompt: Prompt) {
         self.advance(now_s);
         self.technician.reads(task, prompt);
@@ -238,7 +236,7 @@ impl SideWorld {
         self.world_from_s1 = orientation;
         self.tip_m = pose.tip_m + bent_m;
         self.world.carry(orientation);
-        // He takes his hands off an arm whose drives are on.
+        // The technician releases an arm whose drives are on.
         let hands_on = asked == Asked::Rest && !self.technician.is_away();
         let touch = self.technician.touch();
         let aside = self.technician.sets_aside();
@@ -281,7 +279,8 @@ impl SideWorld {
         }
     }
 
-    /// Critically damped second order, exact over the step for a constant goal: as the simulated follower, joint by joint.
+    /// Critically damped second order, exact over the step for a constant goal: like the simulated follower, joint by
+    /// joint.
     fn follow(&mut self, joint: usize, goal_rad: f64) {
         let angle_rad = &mut self.body.joint_rad[joint];
         let speed_rad_s = &mut self.body.joint_rad_s[joint];
@@ -297,7 +296,7 @@ impl SideWorld {
         *speed_rad_s = (*speed_rad_s - slope * (omega * STEP_S)) * decay;
     }
 
-    /// What the tissue's force asks of the joints (`J^T f`), and the same force as the arm's base tells it.
+    /// Applies the joint torques of the tissue's force (`J^T f`), and the same force as reported by the arm's base.
     fn load_joints(&mut self, jacobian: &nalgebra::SMatrix<f64, 6, ARM_JOINTS>) {
         let tip_n = self.world.true_tip_n();
         let held_nm = jacobian.fixed_rows::<3>(0).transpose() * tip_n;

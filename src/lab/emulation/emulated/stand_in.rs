@@ -1,7 +1,9 @@
-//! The stand-in for the handle's library (`emulators/omega`), linked into this program: emulated handles need no file beside it.
+//! A stub of the handle's library (`emulators/omega`), linked into this program so that emulated handles need no
+//! separate file.
 //!
-//! The driver calls it through the same table of C functions that it fills from the manufacturer's library. Only handles with
-//! [`emulator`](force_dimension::Settings::emulator) use it, which only rigs with `emulated = true` may have.
+//! The driver calls it through the same table of C functions that it fills from the manufacturer's library. Only
+//! handles with [`emulator`](force_dimension::Settings::emulator) use it, which only rigs with `emulated = true` may
+//! have.
 
 use drd::{devices, errors, motors, reading};
 use nima_devices::force_dimension::{self, Sdk, SdkFunctions};
@@ -37,7 +39,7 @@ static STAND_IN: Sdk = Sdk::linked(
     },
 );
 
-/// Lets drivers in this program reach emulated handles without a library file. A program does it once, before it opens any.
+/// Lets drivers in this program reach emulated handles without a library file. Call it once, before opening any.
 pub fn provide_handles() {
     force_dimension::provide_stand_in(&STAND_IN);
 }
@@ -65,7 +67,7 @@ mod tests {
                 force_dimension::open(&Settings { serial: Some(4321), emulator, ..Settings::default() }).unwrap();
             assert_eq!((driver.identity().product.as_str(), driver.identity().serial.as_str()), ("omega.7", "4321"));
             driver.enable_force();
-            // The hand gives way to the force like a spring of 500 N/m.
+            // The hand yields to the force like a spring of 500 N/m.
             let begin = Instant::now();
             let mut pushed_m = 0.0;
             while pushed_m < 0.001 && begin.elapsed() < Duration::from_secs(10) {
@@ -78,8 +80,8 @@ mod tests {
         });
     }
 
-    /// A library of the manufacturer's that is loaded later calls its own functions by these names: in a program that exported
-    /// the stand-in's it would reach those instead.
+    /// A manufacturer's library that is loaded later calls its own functions by these names. If the program exported
+    /// the stub's functions, the library would call those instead.
     #[test]
     #[cfg(unix)]
     #[expect(unsafe_code, reason = "looking a symbol up")]
@@ -87,7 +89,7 @@ mod tests {
         provide_handles();
         let this = libloading::os::unix::Library::this();
         for symbol in ["dhdOpen", "drdOpen", "nimaEmulateHandle"] {
-            // SAFETY: it is looked up and not called.
+            // SAFETY: the symbol is looked up and not called.
             let found = unsafe { this.get::<extern "C" fn()>(symbol) };
             assert!(found.is_err(), "{symbol} is exported");
         }

@@ -1,8 +1,9 @@
-//! The simulated technician at the emulated arm of one side: obeys what the screen shows, with the flaws of [`Person`].
+//! The simulated technician at the emulated arm of one side: follows the instructions on the screen, with the flaws of
+//! [`Person`].
 //!
-//! Takes what the screen shows; guides the joints (rad) by hand, pushes, and sets body wall and tissue aside where a
-//! calibration needs it. Everything he does reaches the loop through the devices: the arm's joints move, the sensors feel
-//! his hands. He never guides an arm whose drives are on.
+//! Takes the content of the screen; guides the joints (rad) by hand, pushes, and removes body wall and tissue where a
+//! calibration needs it. All actions reach the loop through the devices: the arm's joints move, the sensors measure the
+//! hands. The technician never guides an arm whose drives are on.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::kinematics::{Arm, Joints};
@@ -16,21 +17,21 @@ use nima_simulation::{
 
 use super::guiding::{Guide, Hold, nearest_turn};
 
-/// The shaft is in the trocar when its axis passes it this near, m.
+/// The shaft is in the trocar if its axis passes the trocar within this distance, m.
 const IN_TROCAR_M: f64 = 1e-3;
-/// Carrying the arm: seconds for each radian of the joint that turns furthest, and at least.
+/// Carrying the arm: seconds per radian of the joint that rotates most, and the minimum.
 const CARRY_S_PER_RAD: f64 = 1.7;
 const CARRY_MIN_S: f64 = 0.8;
 /// A hold that is missed by this much, m at the tip's lever, ...
 const STUCK_M: f64 = 0.03;
-/// ... for this long is not reached by turning on: he lets the arm take another pose, s.
+/// ... for this long, s, cannot be reached by rotating further: the arm must take another pose.
 const STUCK_S: f64 = 1.0;
-/// So many poses he considers before he takes one that the arm may not reach.
+/// Number of poses considered before choosing one that the arm may not reach.
 const CHOICES: usize = 10;
-/// Height at which he holds the tip before poses in free space, touches and moves, m.
+/// Height of the tip before poses in free space, touches and moves, m.
 const ABOVE_M: f64 = 0.05;
 
-/// The technician as far as this side is concerned.
+/// The technician as seen by this side.
 #[derive(Clone, Debug)]
 pub(super) struct Technician {
     arm: Arm,
@@ -38,27 +39,27 @@ pub(super) struct Technician {
     ready_rad: Joints,
     config: PersonConfig,
     scene: Scene,
-    /// How the endoscope's picture is turned.
+    /// Orientation of the endoscope image.
     world_from_view: UnitQuaternion<f64>,
     task: Task,
     prompt: Prompt,
     doing: Doing,
     stuck_s: f64,
-    /// Times he came: no two sessions are alike.
+    /// Number of visits, so that no two sessions are alike.
     visits: u64,
 }
 
 #[derive(Clone, Debug)]
 enum Doing {
-    /// He is not at this arm; it is where it was left.
+    /// Not at this arm, which is where it was left.
     Away,
-    /// He was called, and takes hold of the arm.
+    /// Called, about to take hold of the arm.
     Called,
-    /// He carries the arm.
+    /// Carrying the arm.
     Carrying(Carry),
-    /// He obeys the instructions.
+    /// Following the instructions.
     AtWork(Box<Person>),
-    /// The same, while he lets the arm take another pose.
+    /// Interrupting the work while the arm takes another pose.
     Reseating(Box<Person>, Carry),
 }
 
@@ -76,7 +77,7 @@ impl Carry {
         Self { from_rad: *from_rad, to_rad: *to_rad, seconds, in_s: 0.0 }
     }
 
-    /// Goes on; returns the joint angles, rad, and whether they are where they were to be.
+    /// Advances; returns the joint angles, rad, and whether they have reached their target.
     fn step(&mut self, dt_s: f64) -> (Joints, bool) {
         self.in_s += dt_s;
         let s = (self.in_s / self.seconds).min(1.0);
@@ -86,8 +87,8 @@ impl Carry {
 }
 
 impl Technician {
-    /// Away from the arm of a scene that has been made fit for its side. `ready_rad` are the joint angles in which the
-    /// instrument is in the trocar.
+    /// A technician away from the arm of a scene adapted to its side. `ready_rad` are the joint angles with the
+    /// instrument in the trocar.
     pub(super) fn new(arm: Arm, ready_rad: Joints, scene: &Scene, world_from_view: UnitQuaternion<f64>) -> Self {
         Self {
             arm,
@@ -104,7 +105,6 @@ impl Technician {
         }
     }
 
-    /// Reads the screen.
     pub(super) fn reads(&mut self, task: Task, prompt: Prompt) {
         self.prompt = if prompt.is_finite() { prompt } else { Prompt::Rest };
         if task != self.task {
@@ -113,17 +113,18 @@ impl Technician {
         }
     }
 
-    /// Whether nobody is at the arm.
+    /// Whether no one is at the arm.
     pub(super) const fn is_away(&self) -> bool {
         matches!(self.doing, Doing::Away)
     }
 
-    /// Goes on by `dt_s` with the arm in these angles (rad), whose drives are off; returns where he guides it.
+    /// Advances by `dt_s` with the arm at these angles (rad) and its drives off; returns the angles to which the arm is
+    /// guided.
     pub(super) fn advance(&mut self, joint_rad: &Joints, dt_s: f64) -> Joints {
         let mut joints = *joint_rad;
         self.doing = match std::mem::replace(&mut self.doing, Doing::Away) {
             Doing::Away => Doing::Away,
-            // Nothing is taken out that is to go in again.
+            // Do not remove an instrument that is needed in the trocar.
             Doing::Called if self.stays_in_trocar() && self.is_in_trocar(joint_rad) => {
                 Doing::AtWork(Box::new(self.person(joint_rad)))
             }
@@ -163,7 +164,7 @@ impl Technician {
         Doing::AtWork(person)
     }
 
-    /// A pose that the arm does not take from where it is, he does not try.
+    /// Rejects a pose that the arm cannot reach from its current one.
     fn let_choose(&self, person: &mut Person, joint_rad: &Joints) {
         for _ in 0..CHOICES {
             let Some((tip_m, world_from_s1)) = person.chosen() else { return };
@@ -188,7 +189,7 @@ impl Technician {
         pose.insertion_m(trocar_m) > 0.0 && pose.axis_miss_m(trocar_m).norm() < IN_TROCAR_M
     }
 
-    /// Somebody who begins with this task at an arm in these angles, rad.
+    /// Returns a person who begins this task at an arm with these angles, rad.
     fn person(&mut self, joint_rad: &Joints) -> Person {
         self.visits += 1;
         let mut scene = self.scene.clone();
@@ -197,7 +198,7 @@ impl Technician {
         if self.stays_in_trocar() {
             return Person::new(self.config, &scene).begins_at(pose.tip_m);
         }
-        // The others are done without the body wall.
+        // The other calibrations are done without the body wall.
         scene.trocar = None;
         let person = Person::new(self.config, &scene);
         match self.task {
@@ -208,7 +209,7 @@ impl Technician {
         }
     }
 
-    /// Joint angles in which the present task begins.
+    /// Returns the joint angles at the start of the current task.
     fn beginning(&self, from_rad: &Joints) -> Joints {
         let ready_rad = nearest_turn(from_rad, &self.ready_rad);
         let down = Vector3::new(0.0, 0.0, 1.0);
@@ -233,8 +234,8 @@ impl Technician {
         }
     }
 
-    /// Whether body wall and tissue are out of the way: he sets them aside for every way of the arm, and for the calibrations
-    /// without a wall. There his pushes stand for the tissue on its sensor.
+    /// Whether body wall and tissue are removed: whenever the arm is moved, and for the calibrations without a wall.
+    /// Pushes then replace the tissue on its sensor.
     pub(super) const fn sets_aside(&self) -> bool {
         match self.doing {
             Doing::Away => false,
@@ -243,7 +244,7 @@ impl Technician {
         }
     }
 
-    /// Where he leads the handle, from where it rests, m (`world`).
+    /// Returns the offset of the handle from its rest position, m (`world`).
     pub(super) fn handle_m(&self) -> Vector3<f64> {
         match &self.doing {
             Doing::AtWork(person) | Doing::Reseating(person, _) => person.handle_m(),
@@ -251,7 +252,7 @@ impl Technician {
         }
     }
 
-    /// What his hands do.
+    /// Returns the forces of the technician's hands.
     pub(super) fn touch(&self) -> Touch {
         match &self.doing {
             Doing::AtWork(person) | Doing::Reseating(person, _) => person.touch(),

@@ -1,4 +1,4 @@
-//! The technician at the arm, in virtual time: what he does reaches the sessions through the sensors' readings only.
+//! The technician at the arm, in virtual time: all actions reach the sessions only through the sensors' readings.
 
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{
@@ -59,7 +59,7 @@ impl Bench {
         Self::new(side, &scene)
     }
 
-    /// A sample as the drivers of a rig put it together.
+    /// Returns a sample in the form in which a rig's drivers assemble it.
     fn sample(&mut self, task: Task, prompt: Prompt) -> WristSample {
         self.t_s += 1e-3;
         self.world.reads(self.t_s, task, prompt);
@@ -68,7 +68,7 @@ impl Bench {
         let world_from_s1 = pose.orientation();
         let s1_from_m = from_roll_pitch_yaw_deg(&self.set.s1_from_m_deg.unwrap());
         let miss_m = pose.axis_miss_m(&self.set.rcm.trocar_m).norm();
-        // The tracker tells sixty times a second.
+        // The tracker reports sixty times per second.
         if self.t_s >= self.frame_s {
             self.frame_s += 1.0 / 60.0;
             self.m_from_c = match self.world.marker(self.t_s) {
@@ -129,7 +129,7 @@ pub(super) fn live(model: GravityModel) -> Compensator {
     Compensator::new(model, DEFAULT_TIME_CONSTANT_S, 1e-3)
 }
 
-/// One after the other as a technician does them, at this arm.
+/// Performs all calibrations in order at this arm.
 fn all_calibrations(side: Side) {
     let mut bench = Bench::new(side, &Scene::load("peg_transfer").unwrap());
     let ready: Joints = bench.world.truth(0.0).joint_rad.into();
@@ -165,7 +165,7 @@ fn all_calibrations(side: Side) {
     for _ in 0..60_000 {
         let (sample, wrench) = bench.felt(&mut gravity, Task::TipForce, prompt);
         recorder.step(bench.t_s, Some(&wrench), &sample);
-        // The first second is for the last millimetres of the way into the trocar.
+        // The first second covers the last millimetres into the trocar.
         if recorder.rows() > 200 {
             beside_m = beside_m.max(bench.beside_trocar_m());
         }
@@ -264,13 +264,13 @@ fn the_rig_decides_where_its_sensor_sits_and_not_the_scene() {
     }
 }
 
-/// What the calibrations make of a rig with these flaws.
+/// Results of the calibrations of a rig with these flaws.
 #[derive(Debug)]
 struct Told {
     gravity: Verdict,
     #[expect(dead_code, reason = "read by its Debug form")]
     reason: String,
-    /// Force that is left in free motion, 95th percentile, N; and whether the wizard accepts it.
+    /// Remaining force in free motion, 95th percentile, N; and whether the wizard accepts it.
     #[expect(dead_code, reason = "read by its Debug form")]
     left_n: f64,
     passes: bool,
@@ -278,7 +278,7 @@ struct Told {
     off_deg: f64,
 }
 
-/// Flaws that the pages tell of.
+/// Flaws that the docs describe.
 pub(super) const FLAWS: [(&str, Flaws); 10] = {
     let none = Flaws {
         drift_n_per_min: 0.0,
@@ -311,7 +311,7 @@ pub(super) struct Fitted {
     told: Told,
 }
 
-/// Calibrates gravity and correspondence; `None` if nothing can be fitted.
+/// Calibrates gravity and correspondence; `None` if the fit fails.
 pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     let set = RigConfig::load("emulated").unwrap().devices.unwrap().right.unwrap();
     let mut bench = Bench::with_flaws(Side::Right, &Scene::load("peg_transfer").unwrap(), set, flaws);
@@ -340,7 +340,7 @@ pub(super) fn fitted(flaws: Flaws) -> Option<(Bench, Fitted)> {
     Some((bench, Fitted { gravity: model, correspondence, told }))
 }
 
-/// Prints the table of docs/devices.md.
+/// Prints the table of docs/results/devices.md.
 #[test]
 fn flaws_of_real_devices_break_the_verdicts_that_the_pages_say() {
     let good = Verdict::Accepted;

@@ -1,4 +1,5 @@
-//! Every emulator by its name, alone: without a rig, fed by a stand-in for the world, with settings by name (`nima emulate`).
+//! Every emulator by name, standalone: without a rig, fed by a simple substitute for the world, with settings by name
+//! (`nima emulate`).
 
 use std::{
     io::{Error, ErrorKind, Result},
@@ -9,15 +10,15 @@ use nima_devices::bota::Transport;
 
 use super::Emulator;
 
-/// Settings `KEY=VALUE`; devices that do not have one ignore it.
+/// Settings `KEY=VALUE`; devices ignore keys that they do not have.
 #[derive(Debug, Default)]
 pub struct Settings(Vec<(String, String)>);
 
 impl Settings {
-    /// Of texts `KEY=VALUE`.
+    /// Parses texts `KEY=VALUE`.
     ///
     /// # Errors
-    /// When one is not of this form.
+    /// If a text has another form.
     pub fn new(texts: &[String]) -> Result<Self> {
         let pair = |text: &String| match text.split_once('=') {
             Some((key, value)) => Ok((key.to_owned(), value.to_owned())),
@@ -26,18 +27,18 @@ impl Settings {
         texts.iter().map(pair).collect::<Result<_>>().map(Self)
     }
 
-    /// The value of `key`, if it was given; a value that does not read is an error.
+    /// Returns the value of `key`, if given; a value that cannot be parsed is an error.
     pub(super) fn get<T: FromStr>(&self, key: &str) -> Result<Option<T>> {
         let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
         value.parse().map(Some).map_err(|_| unusable(key, value, "this value cannot be used"))
     }
 
-    /// The value of `key`, or the usual one.
+    /// Returns the value of `key`, or the default.
     pub(super) fn get_or<T: FromStr>(&self, key: &str, usual: T) -> Result<T> {
         Ok(self.get(key)?.unwrap_or(usual))
     }
 
-    /// One of two models by its name; the first without one.
+    /// Returns one of two models by its name; by default the first.
     #[cfg(target_os = "linux")]
     pub(super) fn model<T: Default>(&self, names: [(&str, T); 2]) -> Result<T> {
         let Some(name) = self.get::<String>("model")? else { return Ok(T::default()) };
@@ -47,15 +48,14 @@ impl Settings {
     }
 }
 
-/// A value that cannot be used, and why.
 pub(super) fn unusable(key: &str, value: impl std::fmt::Display, why: &str) -> Error {
     Error::new(ErrorKind::InvalidInput, format!("--set {key}={value}: {why}"))
 }
 
-/// Makes an emulator with settings.
+/// Makes an emulator from settings.
 pub(super) type Alone = fn(&Settings) -> Result<Box<dyn Emulator>>;
 
-/// All that can be emulated, by name.
+/// All emulators, by name.
 pub const ALONE: &[(&str, Alone)] = &[
     ("bota-gen0", |settings| super::bota::alone::sensor(Transport::Gen0, settings)),
     ("bota-gen-a", |settings| super::bota::alone::sensor(Transport::GenA, settings)),

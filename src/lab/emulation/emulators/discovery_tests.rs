@@ -1,4 +1,4 @@
-//! Every cause is provoked where that is possible here, and comes out of `diagnose` with a cure of its own.
+//! Provokes every cause that can be provoked here; `diagnose` reports each with its own remedy.
 
 use std::{
     collections::BTreeSet,
@@ -24,7 +24,7 @@ use nima_devices::{
 };
 use nima_testing::real_time::judged;
 
-/// A device that does what a test says.
+/// A device whose behaviour a test sets.
 struct Fake {
     health: Health,
     identity: Identity,
@@ -75,7 +75,7 @@ fn one(probe: Box<dyn Probe>) -> Result<Found, Trouble> {
     }
 }
 
-/// Something on a pseudo-terminal that writes `frame` every 2 ms; the port, and what ends it.
+/// Writes `frame` to a pseudo-terminal every 2 ms; returns the port, and a guard that ends it.
 #[cfg(unix)]
 fn talking(frame: impl FnMut() -> Vec<u8> + Send + 'static) -> (String, Stop) {
     use serialport::SerialPort as _;
@@ -85,7 +85,7 @@ fn talking(frame: impl FnMut() -> Vec<u8> + Send + 'static) -> (String, Stop) {
     let flag = Arc::clone(&stop);
     let mut frame = frame;
     let thread = std::thread::spawn(move || {
-        // Held open, so that the name stays; not exclusively, so that the probe may open it.
+        // Kept open, so that the name persists; not exclusive, so that the probe may open it.
         let _port = port;
         while !flag.load(Ordering::Acquire) {
             device.write_all(&frame()).ok();
@@ -163,7 +163,7 @@ fn twelve_causes_come_out_each_with_a_cure_of_its_own() {
     });
 }
 
-/// An address at which nobody listens any more.
+/// Returns an address at which no server listens any more.
 fn free_address() -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     listener.local_addr().unwrap().to_string()
@@ -226,7 +226,7 @@ fn a_port_that_another_program_holds_is_busy() {
         use serialport::SerialPort as _;
         let (_device, mut port) = serialport::TTYPort::pair().unwrap();
         let text = format!("serial={}@460800", port.name().unwrap());
-        // What a second program does on opening, on any port: it locks it. A pair is not locked by itself.
+        // A second program locks any port when it opens it. A pair of terminals does not lock itself.
         port.set_exclusive(true).unwrap();
         let held = serialport::new(port.name().unwrap(), 460_800).open_native();
         let trouble = one(probe_named(&text).unwrap());
@@ -296,7 +296,7 @@ fn settings_of_a_serial_probe_are_checked() {
 #[cfg_attr(target_os = "linux", expect(unsafe_code, reason = "std sets rights of whole processes only"))]
 fn without_roots_rights<T>(action: impl FnOnce() -> T) -> T {
     #[cfg(target_os = "linux")]
-    // SAFETY: takes a number (that of `nobody`), and changes this thread alone.
+    // SAFETY: takes a number (the user `nobody`), and affects this thread only.
     unsafe {
         libc::setfsuid(65_534);
     }
@@ -324,7 +324,7 @@ fn rules_name_every_device_of_the_project_and_the_kernels_keys() {
     for line in rules::RULES.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
         assert!(line.contains("==\"") && line.matches('"').count() % 2 == 0, "{line}");
         assert!(["MODE=", "ATTR{latency_timer}=", "ENV{LIBINPUT"].iter().any(|key| line.contains(key)), "{line}");
-        // Whoever sits at the computer, also where there is no group `plugdev`.
+        // Any user who is logged in at the computer, also without a group `plugdev`.
         assert_eq!(line.contains("MODE="), line.contains(r#"TAG+="uaccess""#), "{line}");
     }
     for model in nima_devices::hid::MODELS.iter().filter(|model| model.vendor == 0x046d) {
@@ -354,7 +354,7 @@ fn what_is_plugged_in_is_read_from_the_kernels_files() {
         std::fs::create_dir_all(from.parent().unwrap()).unwrap();
         symlink(sys.join(to), from).unwrap();
     };
-    // A U2D2, a port that the board does not have, one that it has, a virtual console, a cap, a mouse, a haptic device.
+    // A U2D2, a port that the board lacks, one that it has, a virtual console, a cap, a mouse, a haptic device.
     put("devices/usb1/1-2/idVendor", "0403\n");
     put("devices/usb1/1-2/idProduct", "6014\n");
     put("devices/usb1/1-2/product", "USB <-> Serial Converter\n");

@@ -1,4 +1,5 @@
-//! Faults on demand: which there are, the switch that sets one, and what those of the bytes do to frames on their way out.
+//! Fault injection: the list of faults, the switch that sets one, and the effect of transmission faults on outgoing
+//! frames.
 
 use std::{
     collections::VecDeque,
@@ -10,59 +11,58 @@ use std::{
 
 use super::wires::Peer;
 
-/// What an emulated device does wrong.
+/// A fault of an emulated device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u32)]
 pub enum EmulatedFault {
-    /// Nothing.
     #[default]
     None = 0,
-    /// A tenth of the frames never leaves.
+    /// A tenth of the frames is dropped.
     Loss,
-    /// Everything leaves 50 ms late.
+    /// All data are sent 50 ms late.
     Delay,
-    /// The same reading again and again, with the clock of the device standing still.
+    /// The same reading is repeated, and the device's clock stands still.
     Freeze,
-    /// Nothing leaves any more; the line stays open.
+    /// Nothing is sent; the connection stays open.
     Silence,
-    /// Random bytes between and instead of frames.
+    /// Random bytes are sent between and instead of frames.
     Garbage,
-    /// Wrong checksums.
+    /// Checksums are wrong.
     BadChecksum,
-    /// Frames of another kind, or of a wrong length.
+    /// Frames have another type, or a wrong length.
     WrongFrame,
-    /// Neighbouring frames change places.
+    /// Neighbouring frames are swapped.
     Reorder,
-    /// The line is closed; it opens again when the fault is taken back.
+    /// The connection is closed; it reopens when the fault is removed.
     Disconnect,
     /// The device's own fault bits are set.
     DeviceFault,
-    /// Numbers that are not finite.
+    /// Numbers are not finite.
     NotANumber,
-    /// A picture on which there is nothing to see.
+    /// The image is black.
     Black,
-    /// Pictures whose end is missing.
+    /// The ends of images are missing.
     Torn,
-    /// Pictures leave 400 ms late.
+    /// Images are sent 400 ms late.
     Late,
-    /// Pictures of half the size.
+    /// Images have half the size.
     WrongSize,
-    /// Pictures of another format.
+    /// Images have another format.
     OtherFormat,
-    /// Somebody has pushed the endoscope aside.
+    /// The endoscope has been pushed aside.
     Moved,
-    /// The same numbers again and again, while the clock of the device goes on.
+    /// The same numbers are repeated, while the device's clock runs.
     Repeat,
-    /// A block of 32 readings again and again, while the clock goes on.
+    /// A block of 32 readings is repeated, while the clock runs.
     Block,
-    /// The numbers are cut off at their present values.
+    /// The numbers are clipped at their current values.
     EndOfRange,
-    /// 1.5 N more along z.
+    /// Adds 1.5 N along z.
     Jump,
 }
 
 impl EmulatedFault {
-    /// All that concern every device, without `None`.
+    /// Faults that apply to every device, without `None`.
     pub const ALL: [Self; 11] = [
         Self::Loss,
         Self::Delay,
@@ -76,11 +76,11 @@ impl EmulatedFault {
         Self::DeviceFault,
         Self::NotANumber,
     ];
-    /// Those that only a camera has.
+    /// Faults that apply only to cameras.
     pub const OF_PICTURES: [Self; 6] =
         [Self::Black, Self::Torn, Self::Late, Self::WrongSize, Self::OtherFormat, Self::Moved];
 
-    /// Those of a force sensor whose line and clock are sound.
+    /// Faults of a force sensor whose connection and clock are intact.
     pub const OF_SENSORS: [Self; 4] = [Self::Repeat, Self::Block, Self::EndOfRange, Self::Jump];
 
     /// Its name on the command line.
@@ -116,33 +116,33 @@ impl EmulatedFault {
         Self::ALL.into_iter().chain(Self::OF_PICTURES).chain(Self::OF_SENSORS)
     }
 
-    /// By its name.
+    /// Returns the fault with this name.
     pub fn named(name: &str) -> Option<Self> {
         if name == "none" { Some(Self::None) } else { Self::every().find(|fault| fault.name() == name) }
     }
 }
 
-/// The switch by which a test or a person sets the fault of a running emulator.
+/// Sets the fault of a running emulator, from a test or by a person.
 #[derive(Clone, Debug, Default)]
 pub struct FaultSwitch(Arc<AtomicU32>);
 
 impl FaultSwitch {
-    /// Sets the fault; [`EmulatedFault::None`] takes it back.
+    /// Sets the fault; [`EmulatedFault::None`] removes it.
     pub fn set(&self, fault: EmulatedFault) {
         self.0.store(fault as u32, Ordering::Release);
     }
 
-    /// The fault in force.
+    /// The active fault.
     pub fn get(&self) -> EmulatedFault {
         let code = self.0.load(Ordering::Acquire);
         EmulatedFault::every().find(|fault| *fault as u32 == code).unwrap_or_default()
     }
 }
 
-/// How late a delayed frame leaves, s.
+/// Delay of a delayed frame, s.
 const DELAY_S: f64 = 0.050;
 
-/// Frames on their way out of an emulator, as the fault in force lets them go.
+/// Outgoing frames of an emulator, subject to the active fault.
 #[derive(Debug)]
 pub(super) struct FaultyLine {
     late: VecDeque<(f64, Peer, Vec<u8>)>,
@@ -157,7 +157,7 @@ impl Default for FaultyLine {
 }
 
 impl FaultyLine {
-    /// Takes a frame made at `now_s`; `send` gets what leaves now, in order.
+    /// Processes a frame made at `now_s`; `send` gets the frames to be sent now, in order.
     pub(super) fn pass(
         &mut self,
         now_s: f64,
@@ -194,14 +194,14 @@ impl FaultyLine {
         }
     }
 
-    /// Lets go what was delayed until now.
+    /// Sends the frames whose delay has passed.
     pub(super) fn let_late_ones_go(&mut self, now_s: f64, send: &mut dyn FnMut(Peer, &[u8])) {
         while let Some((_, to, frame)) = self.late.pop_front_if(|(due_s, ..)| *due_s <= now_s) {
             send(to, &frame);
         }
     }
 
-    /// What was on its way when the line was cut arrives nowhere.
+    /// Drops the frames in transit when the connection is cut.
     pub(super) fn cut(&mut self) {
         self.late.clear();
         self.held = None;

@@ -1,9 +1,10 @@
-//! An emulator for every device, on its real wire.
+//! An emulator for every device, on its real interface.
 //!
-//! An [`Emulator`] is what a device does, without input and output: it is told the time, what clients send, and the fault in force, and says
-//! what leaves. A simulated world or a test feeds it with what the device would measure. Its `serve` is the body that all of them have: a
-//! thread with the wires, which ends when its [`Serving`] is dropped. Faults are set at any time; what concerns bytes is done by the body,
-//! what concerns meaning (checksum, status bits, numbers) by the emulator itself.
+//! An [`Emulator`] is the behaviour of a device without I/O: it receives the time, the clients' data and the active
+//! fault, and returns the data to send. A simulated world or a test provides the values to be measured. `serve` is
+//! common to all of them: a thread with the connections, which ends when its [`Serving`] is dropped. Faults can be set
+//! at any time; transmission faults are applied by `serve`, and faults of the content (checksum, status bits, numbers)
+//! by the emulator itself.
 
 mod alone;
 pub mod bota;
@@ -32,39 +33,40 @@ pub use wires::{End, Peer};
 
 /// An emulated device. All calls come from one thread.
 pub trait Emulator: Send {
-    /// Claims the places where clients reach it; they are opened by the body, and again after a disconnection.
+    /// Claims the endpoints at which clients reach it; `serve` opens them, and reopens them after a disconnection.
     ///
     /// # Errors
-    /// When a place is taken or not an emulator's.
+    /// If an endpoint is in use, or is not an emulator's.
     fn wires(&self) -> io::Result<Vec<Box<dyn End>>>;
 
-    /// What clients are told, made of the places of its wires.
+    /// Returns the endpoint shown to clients, built from the endpoints of its wires.
     fn endpoint(&self, places: &[String]) -> String {
         places[0].clone()
     }
 
-    /// Called before anything else on the thread that serves.
+    /// Called first on the serving thread.
     fn begin(&mut self) {}
 
-    /// Another client may connect now.
+    /// Whether another client may connect now.
     fn admits(&self) -> bool {
         true
     }
 
-    /// A client connected, or opened the line.
+    /// Called when a client connected, or opened the serial port.
     fn meet(&mut self, _: Peer, _: &mut Turn<'_>) {}
 
-    /// A client sent this; nothing at first, where it only connected.
+    /// Called with data of a client; empty at first if it has only connected.
     fn hear(&mut self, from: Peer, bytes: &[u8], turn: &mut Turn<'_>);
 
-    /// Time has passed, 5 ms at most and not beyond [`due_s`](Self::due_s); also while the line is cut.
+    /// Called when time has passed, at most 5 ms and not beyond [`due_s`](Self::due_s); also while the connection is
+    /// cut.
     fn pass(&mut self, turn: &mut Turn<'_>);
 
-    /// When it has something to send or to do, s; `None`: nothing that must not wait for two milliseconds.
+    /// Returns when it next has something to send or to do, s; `None` if it can wait for two milliseconds.
     fn due_s(&self) -> Option<f64> {
         None
     }
 
-    /// A client is gone; [`Peer::Everyone`] when the line was cut.
+    /// Called when a client is gone; [`Peer::Everyone`] when the connection was cut.
     fn lose(&mut self, _: Peer) {}
 }

@@ -1,19 +1,20 @@
-//! Where emulators serve: ports of this computer, names of pseudo-terminals and paths of sockets, each claimed by one process at a time.
+//! Endpoints of emulators: ports of this computer, names of pseudo-terminals and paths of sockets, each claimed by one
+//! process at a time.
 //!
-//! A name is a link to the terminal. What a dead process left is replaced; what a living one serves, and whatever was not made by an
-//! emulator (a real device, a file), is left alone and told in one line. Folders are those that [`own_folder`](nima_devices::own_folder)
-//! accepts.
+//! A name is a link to the terminal. Remains of a dead process are replaced. An endpoint of a running process, and
+//! anything not created by an emulator (a real device, a file), is left alone and reported in one line. Folders are
+//! those that [`own_folder`](nima_devices::own_folder) accepts.
 
 use std::io::{Error, ErrorKind, Result};
 #[cfg(unix)]
 use std::path::{Path, PathBuf};
 
-/// A port that was asked for: when another program has it, the error says so and what to do.
+/// Adds the remedy to the error if a requested port is in use by another program.
 pub(super) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T> {
     bound.map_err(|error| {
         let reason = match error.kind() {
             ErrorKind::AddrInUse => {
-                "is used by another program, perhaps by another emulated rig: end it, or change the port"
+                "is in use by another program, perhaps by another emulated rig: end it, or change the port"
             }
             ErrorKind::PermissionDenied => "needs more rights (as all below 1024): take another port",
             _ => return error,
@@ -22,7 +23,8 @@ pub(super) fn taken<T>(port: u16, protocol: &str, bound: Result<T>) -> Result<T>
     })
 }
 
-/// `path`, its folder made; without one, `name` in a folder of its own, which goes with the second value.
+/// Returns `path` after creating its folder; without a path, `name` in a new folder, which is deleted with the second
+/// value.
 #[cfg(unix)]
 fn path_of(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile::TempDir>)> {
     let Some(path) = path else {
@@ -37,7 +39,7 @@ fn path_of(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile:
 
 #[cfg(unix)]
 fn foreign(path: &Path) -> Error {
-    let told = format!("{} is no emulator's: take another place, or remove it", path.display());
+    let told = format!("{} does not belong to an emulator: choose another path, or remove it", path.display());
     Error::new(ErrorKind::AlreadyExists, told)
 }
 
@@ -47,7 +49,7 @@ fn served(path: &Path) -> Error {
     Error::new(ErrorKind::AddrInUse, told)
 }
 
-/// A path for a socket, as [`path_of`]: free, or freed of one that nobody serves any more.
+/// Returns a path for a socket, like [`path_of`]; a path left by a dead process is freed.
 #[cfg(target_os = "linux")]
 pub(super) fn socket_path(path: Option<&Path>, name: &str) -> Result<(PathBuf, Option<tempfile::TempDir>)> {
     use std::os::unix::fs::FileTypeExt as _;
@@ -82,23 +84,24 @@ mod terminal {
 
     use super::{foreign, path_of, served};
 
-    /// A program that this process starts holds the lock too until it is loaded, also when the emulator has just ended.
+    /// A program that this process starts inherits the lock until it is loaded, even if the emulator has just ended.
     const INHERITED: Duration = Duration::from_millis(500);
-    /// Where the system makes pseudo-terminals: only links to there are replaced.
+    /// Folder of the system's pseudo-terminals: only links into it are replaced.
     const TERMINALS: &str = "/dev/pts/";
 
-    /// The name of a pseudo-terminal, held as long as this lives; it leads somewhere while a line is connected.
+    /// The name of a pseudo-terminal, held for the lifetime of this value; the link exists while a terminal is
+    /// connected.
     #[derive(Debug)]
     pub(in crate::emulators) struct TerminalName {
         path: PathBuf,
-        /// Locked by this process: the system unlocks it when the process ends, however it does.
+        /// Locked by this process: the system unlocks it when the process ends, however it ends.
         _claim: File,
-        /// The folder of its own, where no place was asked for.
+        /// Its own folder, if no path was requested.
         _folder: Option<tempfile::TempDir>,
     }
 
     impl TerminalName {
-        /// Claims `link`; without one, `name` in a folder of its own. Folders above it are made.
+        /// Claims `link`; without one, `name` in its own folder. Parent folders are created.
         pub(in crate::emulators) fn claim(link: Option<&Path>, name: &str) -> Result<Self> {
             let (path, folder) = path_of(link, name)?;
             let claim = lock_file(&hidden(&path, "lock"))?;
@@ -117,12 +120,12 @@ mod terminal {
             Ok(Self { path, _claim: claim, _folder: folder })
         }
 
-        /// As a client opens it.
+        /// The path that a client opens.
         pub(in crate::emulators) fn path(&self) -> String {
             self.path.display().to_string()
         }
 
-        /// Leads to this terminal from now on.
+        /// Links the name to this terminal from now on.
         pub(in crate::emulators) fn lead_to(&self, terminal: &TTYPort) -> Result<()> {
             let target = terminal.name().ok_or_else(|| Error::other("a pseudo-terminal without a name"))?;
             let fresh = hidden(&self.path, "new");
@@ -131,7 +134,7 @@ mod terminal {
             fs::rename(&fresh, &self.path)
         }
 
-        /// Leads nowhere, as when the cable is pulled.
+        /// Removes the link, as when the cable is unplugged.
         pub(in crate::emulators) fn cut(&self) {
             fs::remove_file(&self.path).ok();
         }
@@ -143,13 +146,13 @@ mod terminal {
         }
     }
 
-    /// A file beside `path` that no listing of devices shows.
+    /// Returns a file next to `path` that no listing of devices shows.
     fn hidden(path: &Path, kind: &str) -> PathBuf {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         path.with_file_name(format!(".{name}.{kind}"))
     }
 
-    /// Nothing is there, or a link that an emulator left.
+    /// Whether nothing exists at the path, or a link left by an emulator.
     fn may_be_replaced(path: &Path) -> bool {
         match fs::symlink_metadata(path) {
             Err(_) => true,

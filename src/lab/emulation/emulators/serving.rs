@@ -1,4 +1,5 @@
-//! The body of every emulator: a thread that opens the wires, hears clients, lets time pass, obeys faults, and ends when it is told to.
+//! The common part of every emulator: a thread that opens the wires, receives from clients, advances the time, applies
+//! faults, and ends on request.
 
 use std::{
     io,
@@ -16,13 +17,13 @@ use super::{
     wires::{ARRIVALS, Arrival, End, Peer, wait},
 };
 
-/// Time passes at least so often for an emulator that does not say when it has something to do, ...
+/// Maximum interval between calls of an emulator that does not report when it is due, ...
 const TICK: Duration = Duration::from_millis(2);
-/// ... for one that does, so that faults and the end are not far away, ...
+/// ... of one that does, so that faults and the end are handled soon, ...
 const IDLE_TICK: Duration = Duration::from_millis(5);
-/// ... and while a fault is in force. Every needless wake-up takes its time from the loop that is tried.
+/// ... and while a fault is active. Every unnecessary wake-up takes time from the loop under test.
 const FAULTY_TICK: Duration = Duration::from_millis(1);
-/// What is taken from a wire at once: the longest datagram.
+/// Maximum read at once: the longest datagram.
 const BUFFER_BYTES: usize = 65_507;
 
 /// A thread that serves an emulated device. Dropping it stops the thread.
@@ -30,14 +31,13 @@ const BUFFER_BYTES: usize = 65_507;
 pub struct Serving {
     /// Where clients find it: a port, an address, a path.
     pub endpoint: String,
-    /// Its faults.
     pub faults: FaultSwitch,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Serving {
-    /// It still serves.
+    /// Whether it is still serving.
     pub fn is_serving(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
@@ -53,10 +53,10 @@ impl Drop for Serving {
 }
 
 impl dyn Emulator {
-    /// Opens its wires and serves them on a thread of its own, until the result is dropped.
+    /// Opens its wires and serves them on its own thread, until the result is dropped.
     ///
     /// # Errors
-    /// When a place is taken, is not an emulator's, or cannot be opened.
+    /// If an endpoint is in use, is not an emulator's, or cannot be opened.
     pub fn serve(self: Box<Self>) -> io::Result<Serving> {
         let mut ends = self.wires()?;
         ends.iter_mut().try_for_each(|end| end.open())?;
@@ -71,31 +71,31 @@ impl dyn Emulator {
     }
 }
 
-/// What an emulator is told in a call, and its way out.
+/// The arguments of an emulator's call, and its output.
 pub struct Turn<'a> {
-    /// Since it began to serve, s.
+    /// s since it began to serve.
     pub now_s: f64,
-    /// The fault in force.
+    /// The active fault.
     pub fault: EmulatedFault,
-    /// The speed that the client of a serial line has set, bit/s.
+    /// The baud rate that the client of a serial port has set, bit/s.
     pub baud: Option<u32>,
     line: &'a mut FaultyLine,
     ends: &'a mut [Box<dyn End>],
 }
 
 impl Turn<'_> {
-    /// Sends a frame, as far as the fault in force lets it.
+    /// Sends a frame, subject to the active fault.
     pub fn send(&mut self, to: Peer, frame: &[u8]) {
         let ends = &mut *self.ends;
         self.line.pass(self.now_s, to, frame, self.fault, &mut |to, bytes| send(ends, to, bytes));
     }
 
-    /// Sends what no fault of the line concerns.
+    /// Sends data that are exempt from transmission faults.
     pub fn send_unspoilt(&mut self, to: Peer, bytes: &[u8]) {
         send(self.ends, to, bytes);
     }
 
-    /// Ends all connections.
+    /// Closes all connections.
     pub fn hang_up(&mut self) {
         self.ends.iter_mut().for_each(|end| end.hang_up());
     }
@@ -132,7 +132,7 @@ impl Host {
         self.emulator.begin();
         while !stop.load(Ordering::Acquire) {
             if self.faults.get() != EmulatedFault::Disconnect {
-                // What cannot be opened now is tried again in the next turn.
+                // An endpoint that cannot be opened now is tried again in the next turn.
                 self.ends.iter_mut().for_each(|end| drop(end.open()));
             } else if self.cut() {
                 self.line.cut();
@@ -150,7 +150,7 @@ impl Host {
         self.cut();
     }
 
-    /// How long nothing is to be done unless something arrives.
+    /// Returns how long to wait if nothing arrives.
     fn rest(&self) -> Duration {
         let due_s = self.emulator.due_s();
         let rest_s = due_s.map_or(f64::INFINITY, |due_s| due_s - self.begin.elapsed().as_secs_f64());
@@ -162,12 +162,12 @@ impl Host {
         Duration::from_secs_f64(rest_s.clamp(0.0, longest.as_secs_f64()))
     }
 
-    /// True if anything was open.
+    /// Returns whether anything was open.
     fn cut(&mut self) -> bool {
         self.ends.iter_mut().fold(false, |any, end| end.cut() | any)
     }
 
-    /// Hands on what has arrived at an end.
+    /// Forwards the data that have arrived at an end.
     fn hear(&mut self, number: usize) {
         for _ in 0..ARRIVALS {
             let admits = self.emulator.admits();

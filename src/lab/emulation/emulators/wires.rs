@@ -1,4 +1,4 @@
-//! Our ends of the wires on which clients reach an emulator: pseudo-terminals, connections, datagrams.
+//! The emulators' ends of the wires: pseudo-terminals, connections, datagrams.
 
 mod connections;
 mod datagrams;
@@ -29,55 +29,55 @@ pub(super) fn terminal(_: Option<&std::path::Path>, name: &str, _: Option<u32>) 
     Err(io::Error::new(io::ErrorKind::Unsupported, told))
 }
 
-/// Who is at the other end.
+/// The client at the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
-    /// Whoever has the terminal open; all that are connected.
+    /// All clients: every program that has the terminal open, or every connection.
     Everyone,
     /// One connection, by its number.
     Connection(u64),
-    /// Who sent a datagram from there.
+    /// The sender of a datagram.
     Address(SocketAddr),
 }
 
-/// What happened at an end; the bytes, so many, are in the buffer.
+/// An event at an end. The number of bytes refers to the buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// Somebody new, and the first bytes.
+    /// A new client, and its first bytes.
     Came(Peer, usize),
     /// Bytes.
     Heard(Peer, usize),
-    /// Somebody is there no longer.
+    /// A client that is gone.
     Gone(Peer),
 }
 
-/// One end of a wire, at a place that is its own for as long as it lives. It never waits.
+/// One end of a wire, at an endpoint that belongs to it for its lifetime. It never blocks.
 pub trait End: Send {
-    /// Where clients find it; known once it was open.
+    /// Where clients find it; known once it has been opened.
     fn endpoint(&self) -> String;
-    /// Opens it, if it is not.
+    /// Opens it if it is closed.
     fn open(&mut self) -> io::Result<()>;
-    /// Closes it, as when the cable is pulled; true if it was open.
+    /// Closes it, as when the cable is unplugged; returns whether it was open.
     fn cut(&mut self) -> bool;
-    /// What has arrived and was not told yet. New clients are taken only where the emulator `admits` them.
+    /// Returns the next event. New clients are accepted only if the emulator `admits` them.
     fn next(&mut self, buffer: &mut [u8], admits: bool) -> Option<Arrival>;
-    /// Sends to those who are meant and here.
+    /// Sends to the addressed clients that are connected.
     fn send(&mut self, to: Peer, bytes: &[u8]);
-    /// Ends all connections.
+    /// Closes all connections.
     fn hang_up(&mut self) {}
-    /// The speed that the client of a serial line has set, bit/s.
+    /// The baud rate that the client of a serial port has set, bit/s.
     fn baud(&self) -> Option<u32> {
         None
     }
-    /// Adds what is readable when something arrives.
+    /// Adds the descriptors that become readable when data arrive.
     #[cfg(unix)]
     fn watch(&self, admits: bool, watched: &mut Vec<RawFd>);
 }
 
-/// Taken from one end in one turn at most, so that the others, the time and the faults are never far away.
+/// Maximum events from one end in one turn, so that the others, the time and the faults are handled soon.
 pub(super) const ARRIVALS: usize = 64;
 
-/// Waits until something arrives at one of the ends, at most this long.
+/// Waits until data arrive at one of the ends, at most this long.
 #[cfg(unix)]
 #[expect(unsafe_code, reason = "std waits for one descriptor only")]
 pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
@@ -89,7 +89,7 @@ pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     let mut watched: Vec<libc::pollfd> = watched.into_iter().map(of).collect();
     let first = watched.as_mut_ptr();
     let count = watched.len() as libc::nfds_t;
-    // SAFETY: the pointers are valid for the call, and the count is that of the vector.
+    // SAFETY: the pointers are valid for the call, and the count is the length of the vector.
     #[cfg(target_os = "linux")]
     unsafe {
         let longest = libc::timespec { tv_sec: 0, tv_nsec: longest.subsec_nanos().into() };
@@ -102,11 +102,11 @@ pub(super) fn wait(ends: &[Box<dyn End>], longest: Duration, admits: bool) {
     }
 }
 
-/// Between two looks at the ends where the system cannot wait for all of them.
+/// Polling interval where the system cannot wait for all ends.
 #[cfg(not(unix))]
 const LOOK: Duration = Duration::from_millis(1);
 
-/// Waits, at most this long: the ends are looked at again soon.
+/// Waits at most this long, because the ends are polled.
 #[cfg(not(unix))]
 pub(super) fn wait(_: &[Box<dyn End>], longest: Duration, _: bool) {
     std::thread::sleep(longest.min(LOOK));

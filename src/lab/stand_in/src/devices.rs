@@ -1,4 +1,4 @@
-//! Who is attached, who is open, how it is.
+//! Attached devices, open devices, and their status.
 
 use std::{
     ffi::{CStr, c_char, c_int, c_uchar, c_ushort},
@@ -19,13 +19,14 @@ pub(crate) fn is_left(handle: &Handle) -> bool {
     handle.reply.kind == LEFT
 }
 
-/// Not of the SDK: adds an emulated handle at `address` ("127.0.0.1:PORT"). 0, or -1 when that is no address.
+/// Not part of the SDK: adds an emulated handle at `address` ("127.0.0.1:PORT"). Returns 0, or -1 if that is not an
+/// address.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nimaEmulateHandle(address: *const c_char) -> c_int {
     if address.is_null() {
         return noted(Err(NULL_ARGUMENT));
     }
-    // SAFETY: not null; a C string, as the caller promises.
+    // SAFETY: not null; the caller guarantees a C string.
     let address = unsafe { CStr::from_ptr(address) }.to_str().unwrap_or_default();
     noted(if tell(address) { Ok(0) } else { Err(INVALID_PARAMETER) })
 }
@@ -33,7 +34,7 @@ pub unsafe extern "C" fn nimaEmulateHandle(address: *const c_char) -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdEnableSimulator(_on: c_uchar) {}
 
-/// 3.17.5.0, or what `NIMA_EMULATED_SDK_VERSION` says ("3.10.0.0").
+/// 3.17.5.0, or the value of `NIMA_EMULATED_SDK_VERSION` ("3.10.0.0").
 fn version() -> [c_int; 4] {
     let mut version = [3, 17, 5, 0];
     let told = std::env::var("NIMA_EMULATED_SDK_VERSION").unwrap_or_default();
@@ -51,7 +52,7 @@ pub unsafe extern "C" fn dhdGetSDKVersion(
     revision: *mut c_int,
 ) {
     for (place, number) in [major, minor, release, revision].into_iter().zip(version()) {
-        // SAFETY: each is null or points to an int.
+        // SAFETY: each pointer is null or valid for an int (SDK).
         unsafe { put(place, number) }.ok();
     }
 }
@@ -112,7 +113,7 @@ pub extern "C" fn dhdGetDeviceID() -> c_int {
 pub unsafe extern "C" fn dhdGetSerialNumber(serial: *mut c_ushort, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let number = c_ushort::try_from(handle.reply.serial).map_err(|_| OUTSIDE_RANGE)?;
-        // SAFETY: null or a place for it.
+        // SAFETY: the pointer is null or valid for one value (SDK).
         unsafe { put(serial, number) }.map(|()| 0)
     }))
 }
@@ -135,7 +136,7 @@ pub extern "C" fn dhdGetSystemName(id: c_char) -> *const c_char {
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetVersion(firmware: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or a place for it.
+    // SAFETY: the pointer is null or valid for one value (SDK).
     noted(with(id, |handle| unsafe { put(firmware, handle.reply.firmware) }.map(|()| 0)))
 }
 
@@ -169,7 +170,7 @@ pub unsafe extern "C" fn dhdGetStatus(status: *mut c_int, id: c_char) -> c_int {
         let mut entries = handle.reply.status.map(u32::cast_signed);
         entries[GRAVITY] = c_int::from(handle.gravity);
         entries[TIME_GUARD] = c_int::from(!handle.time_guard.is_zero());
-        // SAFETY: null or an array of 17, as the SDK asks for.
+        // SAFETY: the pointer is null or valid for 17 values (SDK).
         unsafe { put_all(status, &entries) }.map(|()| code.min(0))
     }))
 }

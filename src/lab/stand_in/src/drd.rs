@@ -1,4 +1,4 @@
-//! The `drd` symbols with behaviour. Regulation is not emulated: nothing here ever moves the handle by itself.
+//! The `drd` symbols that are implemented. Regulation is not emulated: nothing here ever moves the handle by itself.
 
 use std::ffi::{c_char, c_int};
 

@@ -19,7 +19,7 @@ pub(crate) const NULL_ARGUMENT: c_int = 17;
 pub(crate) const IN_USE: c_int = 20;
 pub(crate) const INVALID_PARAMETER: c_int = 21;
 
-/// Notes how a call went and gives its return value.
+/// Stores the error of a call and returns its return value.
 pub(crate) fn noted(outcome: Result<c_int, c_int>) -> c_int {
     LAST.set(outcome.err().unwrap_or(0));
     outcome.unwrap_or(-1)

@@ -1,4 +1,4 @@
-//! Handles: who is attached, who is open, and one exchange with it.
+//! Handles: attached and open devices, and one exchange with a device.
 
 use std::{
     ffi::{c_char, c_int},
@@ -13,20 +13,19 @@ use crate::{
     wire::{ADDRESS_VARIABLE, FRESH, Order, Reply, Request, SATURATED, TAKEN},
 };
 
-/// Devices that can be open at once.
+/// Maximum number of open devices.
 const HANDLES: usize = 16;
-/// Without an answer for so long an exchange has failed. An emulator shares its processor with others.
+/// An exchange without an answer fails after this time. An emulator shares its processor with other programs.
 const EXCHANGE: Duration = Duration::from_millis(2);
-/// Between two looks for an answer.
+/// Interval between two checks for an answer.
 const LOOK: Duration = Duration::from_micros(30);
-/// The same as [`EXCHANGE`] while looking for devices.
+/// The same as [`EXCHANGE`], when searching for devices.
 const GREETING: Duration = Duration::from_millis(80);
-/// `DHD_TIMEGUARD`: nothing newer was to be had.
+/// `DHD_TIMEGUARD`: nothing newer was available.
 pub(crate) const TIMEGUARD: c_int = 1;
 /// `DHD_MOTOR_SATURATED`: the force was scaled down.
 pub(crate) const MOTOR_SATURATED: c_int = 2;
 
-/// An open device.
 pub(crate) struct Handle {
     socket: UdpSocket,
     client: u64,
@@ -35,13 +34,13 @@ pub(crate) struct Handle {
     pub(crate) time_guard: Duration,
     pub(crate) reply: Reply,
     pub(crate) history: History,
-    /// What was asked for last: force, gripper force, N.
+    /// Last command: force, gripper force, N.
     pub(crate) asked_n: [f64; 4],
     pub(crate) force_max_n: Option<f64>,
     pub(crate) gripper_max_n: Option<f64>,
     pub(crate) gravity: bool,
     pub(crate) effector_kg: f64,
-    /// Begin of the running second, force calls in it, calls a millisecond in the one before.
+    /// Start of the current second, force calls in it, calls per millisecond in the previous second.
     rate: (Instant, u32, f64),
 }
 
@@ -58,7 +57,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Adds a device at an address of the program's own; false when it is none.
+/// Adds a device at an address given by the program; false if it is not an address.
 pub(crate) fn tell(address: &str) -> bool {
     let Ok(address) = address.trim().parse() else { return false };
     let mut registry = locked(&REGISTRY);
@@ -68,7 +67,7 @@ pub(crate) fn tell(address: &str) -> bool {
     true
 }
 
-/// All addresses of the environment and of the program.
+/// Returns all addresses from the environment and from the program.
 fn addresses() -> Vec<SocketAddr> {
     let told = std::env::var(ADDRESS_VARIABLE).unwrap_or_default();
     let mut all: Vec<SocketAddr> = told.split(',').filter_map(|one| one.trim().parse().ok()).collect();
@@ -106,7 +105,7 @@ impl Handle {
         Some(handle)
     }
 
-    /// One request and its reply. Answers to older requests and damaged ones are passed over.
+    /// Sends one request and returns its reply. Replies to older requests and damaged ones are skipped.
     fn exchange(&mut self, order: Order, argument: u32, values: [f64; 4], timeout: Duration) -> Result<(), c_int> {
         self.sequence = self.sequence.wrapping_add(1);
         let request = Request { client: self.client, sequence: self.sequence, order, argument, values };
@@ -125,7 +124,7 @@ impl Handle {
                     if begin.elapsed() > timeout {
                         return Err(if damaged { COMMUNICATION } else { TIMED_OUT });
                     }
-                    // A time limit of the socket's own is rounded up to the kernel's tick, several milliseconds.
+                    // A socket timeout is rounded up to the kernel's tick, several milliseconds.
                     std::thread::sleep(LOOK);
                     continue;
                 }
@@ -148,7 +147,7 @@ impl Handle {
         self.exchange(order, argument, [0.0; 4], EXCHANGE).map(|()| 0)
     }
 
-    /// Reads anew, unless the last exchange is within the time guard.
+    /// Reads again, unless the last exchange is within the time guard.
     pub(crate) fn refresh(&mut self) -> Result<c_int, c_int> {
         if self.exchanged.elapsed() < self.time_guard {
             return Ok(TIMEGUARD);
@@ -161,7 +160,7 @@ impl Handle {
         Ok(0)
     }
 
-    /// Sets force (N) and gripper force (N), within the limits that the program set.
+    /// Sets force (N) and gripper force (N), within the limits set by the program.
     pub(crate) fn force(&mut self, mut asked_n: [f64; 4]) -> Result<c_int, c_int> {
         if asked_n.iter().any(|value| !value.is_finite()) {
             return Err(crate::errors::INVALID_PARAMETER);
@@ -183,7 +182,7 @@ impl Handle {
         Ok(if self.reply.flags & SATURATED == 0 { 0 } else { MOTOR_SATURATED })
     }
 
-    /// Force-setting calls a millisecond; 0 before it is known and after they end.
+    /// Calls per millisecond that set a force; 0 before it is known and after they end.
     pub(crate) fn com_khz(&self) -> f64 {
         if self.rate.0.elapsed() > Duration::from_secs(1) { 0.0 } else { self.rate.2 }
     }
@@ -193,26 +192,26 @@ fn index(id: c_char) -> Option<usize> {
     if id == DEFAULT { locked(&REGISTRY).default } else { usize::try_from(id).ok() }
 }
 
-/// The default device. C's char has a sign on some processors only.
+/// The default device. C's char is signed on some processors only.
 pub(crate) const DEFAULT: c_char = c_char::from_ne_bytes([0xff]);
 
-/// Does something with an open device; error 5 when there is none.
+/// Calls `work` with an open device; error 5 if there is none.
 pub(crate) fn with<T>(id: c_char, work: impl FnOnce(&mut Handle) -> Result<T, c_int>) -> Result<T, c_int> {
     let place = index(id).and_then(|index| OPEN.get(index)).ok_or(NO_DEVICE)?;
     work(locked(place).as_mut().ok_or(NO_DEVICE)?)
 }
 
-/// Devices that answer.
+/// Returns the devices that answer.
 pub(crate) fn attached() -> Vec<(SocketAddr, Reply)> {
     addresses().into_iter().filter_map(|address| Some((address, Handle::reach(address)?.reply))).collect()
 }
 
-/// Whether somebody has it open.
+/// Whether a program has it open.
 pub(crate) const fn is_taken(reply: &Reply) -> bool {
     reply.flags & TAKEN != 0
 }
 
-/// Opens the first free device that fits; its number.
+/// Opens the first free device that fits; returns its number.
 pub(crate) fn open(fits: impl Fn(usize, &Reply) -> bool) -> Result<c_int, c_int> {
     let mut error = NO_DEVICE;
     for (number, address) in addresses().into_iter().enumerate() {
@@ -224,7 +223,7 @@ pub(crate) fn open(fits: impl Fn(usize, &Reply) -> bool) -> Result<c_int, c_int>
             error = refused;
             continue;
         }
-        // Whoever opened it has it: no other place in the table can hold the same device.
+        // The client that opened it owns it: no other entry of the table can hold the same device.
         for (id, place) in OPEN.iter().enumerate() {
             let mut place = locked(place);
             if place.is_none() {

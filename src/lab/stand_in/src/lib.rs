@@ -1,12 +1,14 @@
-//! Stands in for Force Dimension's `libdrd` (and `libdhd`): exports the symbols of SDK 3.17, with an emulated omega.7 behind them.
+//! A stub of Force Dimension's `libdrd` (and `libdhd`): exports the symbols of SDK 3.17, with an emulated omega.7
+//! behind them.
 //!
-//! It is built in two forms: a shared library, which other programs load as the manufacturer's, and a Rust library, by which `nima` has
-//! the same functions linked in and needs no file beside it.
+//! Built in two forms: a shared library, which other programs load as the manufacturer's, and a Rust library, which
+//! links the same functions into `nima` so that it needs no separate file.
 //!
-//! Where the handle is comes from `nima emulate force-dimension` over a local UDP socket whose address the environment variable
-//! `NIMA_EMULATED_HANDLE` names (several devices: several addresses, with commas), or the extra symbol `nimaEmulateHandle`.
-//! Without one no device is attached and every call fails as the genuine library's does. Motors, watchdog and velocity threshold
-//! live in the emulated device, not here: they work on when the program that loaded this library hangs or dies.
+//! The pose of the handle comes from `nima emulate force-dimension` over a local UDP socket. Its address is in the
+//! environment variable `NIMA_EMULATED_HANDLE` (several devices: several addresses, separated by commas), or is set by
+//! the extra symbol `nimaEmulateHandle`. Without one no device is attached, and every call fails like the genuine
+//! library's. Motors, watchdog and velocity threshold are in the emulated device, not here: they keep working when the
+//! program that loaded this library hangs or dies.
 //!
 //! Symbols that neither our driver nor `forcedimension-core` uses return -1 with error 10 (feature not implemented). Units as in the SDK:
 //! m, N, rad (or degrees by name), 125 us for the watchdog.

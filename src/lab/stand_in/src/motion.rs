@@ -1,10 +1,10 @@
-//! Velocities from the last positions that were read, as the SDK makes them, and the wrist's angles.
+//! Velocities from the last positions read, computed like the SDK's, and the wrist's angles.
 
 use std::{collections::VecDeque, time::Instant};
 
 use crate::wire::Reply;
 
-/// What is kept of one reading.
+/// The stored part of one reading.
 #[derive(Clone, Copy)]
 struct Past {
     at: Instant,
@@ -12,7 +12,7 @@ struct Past {
     gripper_rad: f64,
 }
 
-/// Readings of the last while.
+/// Recent readings.
 pub(crate) struct History {
     past: VecDeque<Past>,
     /// Window, s.
@@ -25,11 +25,11 @@ impl Default for History {
     }
 }
 
-/// Readings kept at most; more than the fastest client makes in the longest window.
+/// Maximum number of stored readings; more than the fastest client makes in the longest window.
 const KEPT: usize = 2048;
 
 impl History {
-    /// Keeps a reading.
+    /// Stores a reading.
     pub(crate) fn note(&mut self, at: Instant, reply: &Reply) {
         self.past.push_back(Past { at, position_m: reply.position_m, gripper_rad: reply.gripper_rad });
         while self.past.len() > KEPT {
@@ -37,7 +37,8 @@ impl History {
         }
     }
 
-    /// Velocity (m/s) and speed of the gripper (rad/s); `None` with less than two readings within the window before the newest.
+    /// Returns velocity (m/s) and speed of the gripper (rad/s); `None` with fewer than two readings within the window
+    /// before the newest.
     pub(crate) fn velocity(&mut self) -> Option<([f64; 3], f64)> {
         let newest = *self.past.back()?;
         while self.past.front().is_some_and(|past| (newest.at - past.at).as_secs_f64() > self.window_s) {
@@ -51,7 +52,8 @@ impl History {
     }
 }
 
-/// Angles of the emulated wrist, rad: its frame is a turn about z, then y, then x of the device (`Rx(a) Ry(b) Rz(g)`).
+/// Angles of the emulated wrist, rad: its frame is a rotation about z, then y, then x of the device (`Rx(a) Ry(b)
+/// Rz(g)`).
 pub(crate) fn wrist_rad(frame: &[f64; 9]) -> [f64; 3] {
     [(-frame[5]).atan2(frame[8]), frame[2].clamp(-1.0, 1.0).asin(), (-frame[1]).atan2(frame[0])]
 }

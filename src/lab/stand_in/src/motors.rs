@@ -1,4 +1,4 @@
-//! What the motors do, and the settings that protect the hand.
+//! Output of the motors, and the settings that protect the hand.
 
 use std::{
     ffi::{c_char, c_int, c_uchar, c_uint},
@@ -22,7 +22,7 @@ pub extern "C" fn dhdEnableForce(on: c_uchar, id: c_char) -> c_int {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdEnableGripperForce(_on: c_uchar, id: c_char) -> c_int {
-    // Matters to grippers with a default state only.
+    // Affects only grippers with a default state.
     noted(with(id, |_| Ok(0)))
 }
 
@@ -48,7 +48,7 @@ pub extern "C" fn dhdSetForceAndGripperForce(fx: f64, fy: f64, fz: f64, fg: f64,
 
 #[unsafe(no_mangle)]
 pub extern "C" fn dhdSetForceAndTorque(fx: f64, fy: f64, fz: f64, _tx: f64, _ty: f64, _tz: f64, id: c_char) -> c_int {
-    // The wrist is passive: torques are ignored.
+    // The wrist is passive, so torques are ignored.
     noted(with(id, |handle| handle.force([fx, fy, fz, handle.asked_n[3]])))
 }
 
@@ -66,14 +66,14 @@ pub extern "C" fn dhdSetForceAndTorqueAndGripperForce(
     noted(with(id, |handle| handle.force([fx, fy, fz, fg])))
 }
 
-/// The force and torque that the motors were last told, and the gripper's force.
+/// Writes the last commanded force and torque, and the gripper's force.
 ///
 /// # Safety
-/// The places are null or may be written.
+/// The pointers are null or valid for writes.
 unsafe fn told(force: [*mut f64; 3], torque: Option<[*mut f64; 3]>, gripper: Option<*mut f64>, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let [x, y, z, gripper_n] = handle.asked_n;
-        // SAFETY: as the caller promises.
+        // SAFETY: guaranteed by the caller.
         unsafe {
             put_three(force, [x, y, z])?;
             torque.map_or(Ok(()), |torque| put_three(torque, [0.0; 3]))?;
@@ -89,7 +89,7 @@ macro_rules! told {
         pub unsafe extern "C" fn $name(
             $($x: *mut f64, $y: *mut f64, $z: *mut f64,)* $($gripper: *mut f64,)? id: c_char,
         ) -> c_int {
-            // SAFETY: as the SDK asks for.
+            // SAFETY: guaranteed by the caller (SDK).
             unsafe { told($force, $torque, $to_gripper, id) }
         }
     )*};
@@ -103,7 +103,7 @@ told! {
 
 macro_rules! limit {
     ($($set:ident $get:ident $field:ident;)*) => {$(
-        /// A negative limit is none.
+        /// A negative limit means no limit.
         #[unsafe(no_mangle)]
         pub extern "C" fn $set(limit: f64, id: c_char) -> c_int {
             noted(with(id, |handle| {
@@ -150,7 +150,7 @@ pub extern "C" fn dhdSetEffectorMass(mass_kg: f64, id: c_char) -> c_int {
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetEffectorMass(mass_kg: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or a place for it.
+    // SAFETY: the pointer is null or valid for one value (SDK).
     noted(with(id, |handle| unsafe { put(mass_kg, handle.effector_kg) }.map(|()| 0)))
 }
 
@@ -171,7 +171,7 @@ pub extern "C" fn dhdDisableExpertMode() -> c_int {
     noted(Ok(0))
 }
 
-/// Watchdog and velocity threshold protect the hand: changing them to something weaker takes expert mode here.
+/// Watchdog and velocity threshold protect the hand, so weakening them requires expert mode.
 fn expert_for(weaker: bool) -> Result<(), c_int> {
     if weaker && !EXPERT.load(Ordering::Relaxed) { Err(EXPERT_MODE_DISABLED) } else { Ok(()) }
 }
@@ -186,7 +186,7 @@ pub extern "C" fn dhdSetVelocityThreshold(threshold: c_uint, id: c_char) -> c_in
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetVelocityThreshold(threshold: *mut c_uint, id: c_char) -> c_int {
-    // SAFETY: null or a place for it.
+    // SAFETY: the pointer is null or valid for one value (SDK).
     noted(with(id, |handle| unsafe { put(threshold, handle.reply.velocity_threshold) }.map(|()| 0)))
 }
 
@@ -199,7 +199,7 @@ pub extern "C" fn dhdSetWatchdog(steps: c_uchar, id: c_char) -> c_int {
 pub unsafe extern "C" fn dhdGetWatchdog(steps: *mut c_uchar, id: c_char) -> c_int {
     noted(with(id, |handle| {
         let value = c_uchar::try_from(handle.reply.watchdog).map_err(|_| OUTSIDE_RANGE)?;
-        // SAFETY: null or a place for it.
+        // SAFETY: the pointer is null or valid for one value (SDK).
         unsafe { put(steps, value) }.map(|()| 0)
     }))
 }

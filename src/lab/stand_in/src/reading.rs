@@ -1,4 +1,4 @@
-//! Where the hand is.
+//! Pose of the hand.
 
 use std::ffi::{c_char, c_int, c_uint};
 
@@ -15,7 +15,7 @@ const DEG: f64 = 180.0 / std::f64::consts::PI;
 const GRIPPER_OPEN_RAD: f64 = std::f64::consts::FRAC_PI_6;
 const GRIPPER_OPEN_M: f64 = 0.025;
 
-/// Reads anew and writes what `write` makes of it.
+/// Reads again, and calls `write` with the result.
 fn read(id: c_char, write: impl FnOnce(&mut Handle) -> Result<(), c_int>) -> c_int {
     noted(with(id, |handle| {
         let code = handle.refresh()?;
@@ -25,25 +25,25 @@ fn read(id: c_char, write: impl FnOnce(&mut Handle) -> Result<(), c_int>) -> c_i
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetPosition(px: *mut f64, py: *mut f64, pz: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or places for them.
+    // SAFETY: each pointer is null or valid for one value (SDK).
     read(id, |handle| unsafe { put_three([px, py, pz], handle.reply.position_m) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetOrientationFrame(frame: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or an array of 3 by 3.
+    // SAFETY: the pointer is null or valid for 3 by 3 values (SDK).
     read(id, |handle| unsafe { put_all(frame, &handle.reply.frame) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetOrientationRad(a: *mut f64, b: *mut f64, g: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or places for them.
+    // SAFETY: each pointer is null or valid for one value (SDK).
     read(id, |handle| unsafe { put_three([a, b, g], wrist_rad(&handle.reply.frame)) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dhdGetOrientationDeg(a: *mut f64, b: *mut f64, g: *mut f64, id: c_char) -> c_int {
-    // SAFETY: null or places for them.
+    // SAFETY: each pointer is null or valid for one value (SDK).
     read(id, |handle| unsafe { put_three([a, b, g], wrist_rad(&handle.reply.frame).map(|angle| angle * DEG)) })
 }
 
@@ -55,19 +55,19 @@ pub unsafe extern "C" fn dhdGetPositionAndOrientationFrame(
     frame: *mut f64,
     id: c_char,
 ) -> c_int {
-    // SAFETY: null or places for them.
+    // SAFETY: each pointer is null or valid for one value (SDK).
     read(id, |handle| unsafe {
         put_three([px, py, pz], handle.reply.position_m)?;
         put_all(frame, &handle.reply.frame)
     })
 }
 
-/// Position and the wrist's angles, times `scale`.
+/// Writes position and the wrist's angles, times `scale`.
 ///
 /// # Safety
-/// The places are null or may be written.
+/// The pointers are null or valid for writes.
 unsafe fn pose(places: [[*mut f64; 3]; 2], scale: f64, id: c_char) -> c_int {
-    // SAFETY: as the caller promises.
+    // SAFETY: guaranteed by the caller.
     read(id, |handle| unsafe {
         put_three(places[0], handle.reply.position_m)?;
         put_three(places[1], wrist_rad(&handle.reply.frame).map(|angle| angle * scale))
@@ -80,7 +80,7 @@ macro_rules! pose {
         pub unsafe extern "C" fn $name(
             px: *mut f64, py: *mut f64, pz: *mut f64, a: *mut f64, b: *mut f64, g: *mut f64, id: c_char,
         ) -> c_int {
-            // SAFETY: as the SDK asks for.
+            // SAFETY: guaranteed by the caller (SDK).
             unsafe { pose([[px, py, pz], [a, b, g]], $scale, id) }
         }
     )*};
@@ -98,7 +98,7 @@ macro_rules! gripper {
             let value: fn(&mut Handle) -> Result<f64, c_int> = $value;
             read(id, |handle| {
                 let value = value(handle)?;
-                // SAFETY: null or a place for it.
+                // SAFETY: the pointer is null or valid for one value (SDK).
                 unsafe { put(out, value) }
             })
         }
@@ -125,7 +125,7 @@ gripper! {
 pub unsafe extern "C" fn dhdGetLinearVelocity(vx: *mut f64, vy: *mut f64, vz: *mut f64, id: c_char) -> c_int {
     read(id, |handle| {
         let (linear, _) = handle.history.velocity().ok_or(TIMED_OUT)?;
-        // SAFETY: null or places for them.
+        // SAFETY: each pointer is null or valid for one value (SDK).
         unsafe { put_three([vx, vy, vz], linear) }
     })
 }

@@ -1,4 +1,4 @@
-//! Symbols that are there because clients resolve them while they load. A caller's arguments are not looked at, which C's calling
+//! Symbols that exist because clients resolve them while loading. A caller's arguments are ignored, which C's calling
 //! conventions on 64-bit Linux, macOS and Windows allow.
 
 use std::ffi::c_int;
@@ -8,7 +8,7 @@ use crate::{
     handle::{DEFAULT, with},
 };
 
-/// -1: with error 5 where no device is open, with 10 otherwise.
+/// Returns -1: with error 5 if no device is open, with 10 otherwise.
 pub(crate) fn refused() -> c_int {
     noted(with(DEFAULT, |_| Ok(())).and(Err(NOT_IMPLEMENTED)))
 }

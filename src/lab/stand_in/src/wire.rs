@@ -1,14 +1,16 @@
-//! One exchange with an emulated handle: a request and a reply, each one datagram, as a USB exchange of the real device is.
+//! One exchange with an emulated handle: a request and a reply, each one datagram, like a USB exchange of the real
+//! device.
 //!
-//! This file is compiled twice, here and in the stand-in library (`emulators/omega`), so that both sides agree by construction;
-//! it uses the standard library alone. Numbers are little-endian; lengths in m, forces in N, angles in rad. A datagram ends with
-//! a checksum (FNV-1a, 32 bits); whatever is too short, too long, of another kind or damaged is `None`.
+//! This file is compiled twice, here and in the stub library (`emulators/omega`), so that both sides agree by
+//! construction; it uses only the standard library. Numbers are little-endian; lengths in m, forces in N, angles in
+//! rad. A datagram ends with a checksum (FNV-1a, 32 bits); a datagram that is too short, too long, of another kind or
+//! damaged is `None`.
 
 /// Entries of the status array (SDK 3.17: power ... axis checked).
 pub const STATUS_ENTRIES: usize = 17;
-/// Length of a request, bytes.
+/// Bytes.
 pub const REQUEST_BYTES: usize = 60;
-/// Length of a reply, bytes.
+/// Bytes.
 pub const REPLY_BYTES: usize = 228;
 /// Environment variable with the addresses of emulated handles, separated by commas; without it no device is attached.
 pub const ADDRESS_VARIABLE: &str = "NIMA_EMULATED_HANDLE";
@@ -16,15 +18,14 @@ pub const ADDRESS_VARIABLE: &str = "NIMA_EMULATED_HANDLE";
 const REQUEST_KIND: u32 = 0x514d_494e; // "NIMQ"
 const REPLY_KIND: u32 = 0x524d_494e; // "NIMR"
 
-/// What a client asks of the device.
+/// A client's command to the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Order {
-    /// Who are you? Changes nothing; anybody may ask.
+    /// Identifies the device. Changes nothing; allowed for every client.
     Hello = 0,
     /// Take possession.
     Open,
-    /// Read all.
     Read,
     /// Set force (first three values) and gripper force (fourth); read all.
     Force,
@@ -32,13 +33,13 @@ pub enum Order {
     EnableForce,
     /// Argument 1: brakes on. 0: brakes off, no current.
     Brakes,
-    /// Argument: 125 us steps without a force command until the device gives up; 0 is never.
+    /// Argument: 125 us steps without a force command until the device switches off; 0 is never.
     Watchdog,
     /// Argument: speed at which force is cut, mm/s here (the real unit is the device's own); 0 is never.
     VelocityThreshold,
     /// Argument 1: the gripper counts as a button when closed.
     Button,
-    /// Give it back; the device brakes.
+    /// Release the device, which then brakes.
     Close,
 }
 
@@ -57,23 +58,21 @@ impl Order {
     ];
 }
 
-/// A request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// Who asks: any number that differs between clients.
+    /// Any number that differs between clients.
     pub client: u64,
     /// Number of the exchange.
     pub sequence: u32,
-    /// What.
+    /// The command.
     pub order: Order,
-    /// Of the order.
+    /// Argument of the order.
     pub argument: u32,
-    /// Of [`Order::Force`], N.
+    /// Values of [`Order::Force`], N.
     pub values: [f64; 4],
 }
 
 impl Request {
-    /// To bytes.
     pub fn encode(&self) -> [u8; REQUEST_BYTES] {
         let mut out = Out([0; REQUEST_BYTES], 0);
         out.put(&REQUEST_KIND.to_le_bytes());
@@ -85,7 +84,6 @@ impl Request {
         out.sealed()
     }
 
-    /// From bytes.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut of = In::opened(bytes, REQUEST_BYTES, REQUEST_KIND)?;
         let client = u64::from_le_bytes(of.take()?);
@@ -96,48 +94,42 @@ impl Request {
     }
 }
 
-/// A reply: the whole state of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reply {
-    /// Of the request.
+    /// From the request.
     pub client: u64,
-    /// Of the request.
+    /// From the request.
     pub sequence: u32,
     /// Number of the SDK's error; 0 is none.
     pub error: u32,
-    /// Bit 0: the state is newer than the one before. Bit 1: the motors were saturated. Bit 2: somebody else has it open.
+    /// Bit 0: the state is newer than the previous one. Bit 1: the motors were saturated. Bit 2: another program has it
+    /// open.
     pub flags: u32,
-    /// Serial number.
     pub serial: u32,
-    /// Type of the device as the SDK numbers them.
+    /// Type of the device, numbered as in the SDK.
     pub kind: u32,
-    /// Buttons, first in the lowest bit.
+    /// The first in the lowest bit.
     pub buttons: u32,
-    /// Velocity threshold.
     pub velocity_threshold: u32,
-    /// Watchdog, 125 us steps.
+    /// 125 us steps.
     pub watchdog: u32,
-    /// The status array.
     pub status: [u32; STATUS_ENTRIES],
-    /// Firmware version.
     pub firmware: f64,
-    /// Position, m.
     pub position_m: [f64; 3],
-    /// Rotation matrix, row by row.
+    /// Row by row.
     pub frame: [f64; 9],
     /// Opening of the gripper, rad, negative on left-handed devices.
     pub gripper_rad: f64,
 }
 
-/// [`Reply::flags`]: the state is newer than the one before.
+/// [`Reply::flags`]: the state is newer than the previous one.
 pub const FRESH: u32 = 1;
 /// [`Reply::flags`]: the motors were saturated.
 pub const SATURATED: u32 = 2;
-/// [`Reply::flags`]: somebody else has it open.
+/// [`Reply::flags`]: another program has it open.
 pub const TAKEN: u32 = 4;
 
 impl Reply {
-    /// To bytes.
     pub fn encode(&self) -> [u8; REPLY_BYTES] {
         let mut out = Out([0; REPLY_BYTES], 0);
         out.put(&REPLY_KIND.to_le_bytes());
@@ -153,7 +145,6 @@ impl Reply {
         out.sealed()
     }
 
-    /// From bytes.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut of = In::opened(bytes, REPLY_BYTES, REPLY_KIND)?;
         let client = u64::from_le_bytes(of.take()?);
@@ -196,7 +187,7 @@ fn checksum(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0x811c_9dc5, |sum, byte| (sum ^ u32::from(*byte)).wrapping_mul(0x0100_0193))
 }
 
-/// A datagram being written; what does not fit is left out, which no message here can do.
+/// A datagram being written; data that do not fit are left out, which cannot happen with the messages here.
 struct Out<const N: usize>([u8; N], usize);
 
 impl<const N: usize> Out<N> {
@@ -221,7 +212,6 @@ impl<const N: usize> Out<N> {
     }
 }
 
-/// A datagram being read.
 struct In<'a>(&'a [u8]);
 
 impl<'a> In<'a> {

@@ -1,10 +1,11 @@
-//! The baselines of others beside the program's own modes, on recordings and scenes.
+//! Baselines from the literature compared with the program's own modes, on recordings and scenes.
 //!
-//! Takes [`Source`]s of motion and force. For every source, delay and mode it gives the mean error at the horizon (the force
-//! rendered for time t from data up to t - D and the motion at t, against the force measured at t) over that of delayed
-//! reflection, start-up included: every sample counts from the first one that has a delayed force, for all modes alike, and a
-//! mode without a valid force renders none. Then the mean over the sources with its 95 % confidence interval, apart for the
-//! recordings that constants were chosen on, for those held out, and for simulated scenes. Deterministic.
+//! Takes [`Source`]s of motion and force. For every source, delay and mode it returns the mean prediction error at the
+//! horizon (the force rendered for time t from data up to t - D and the motion at t, compared with the force measured
+//! at t) as a ratio to the error of delayed reflection, start-up included: every sample counts from the first one that
+//! has a delayed force, for all modes alike, and a mode without a valid force renders none. Then the mean over the
+//! sources with its 95 % confidence interval, separately for the recordings used for choosing constants, for held-out
+//! recordings, and for simulated scenes. Deterministic.
 
 mod measure;
 mod present;
@@ -21,76 +22,71 @@ pub use statistics::Interval;
 
 use crate::{Experiment, tradeoff::Source};
 
-/// Recordings that constants were chosen on, of the program's own modes and of the baselines: files whose names begin so.
+/// Prefixes of the recordings on which constants were chosen, both of the program's own modes and of the baselines.
 pub const CHOSEN_ON: [&str; 2] = ["m1_question1a_", "m1_question1b_"];
 
-/// The modes of the table, best known last.
+/// The modes of the table, the best known last.
 const OWN: [Mode; 5] = [Mode::Dfr, Mode::Anchored, Mode::Matched, Mode::Nima, Mode::Best];
 
-/// Which part of the material a source belongs to.
+/// The part of the material to which a source belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Split {
-    /// A recording that no constant was chosen on.
+    /// A recording on which no constant was chosen.
     HeldOut,
-    /// A recording that constants were chosen on.
+    /// A recording on which constants were chosen.
     ChosenOn,
-    /// A simulated scene.
     Scene,
 }
 
 impl Split {
-    /// All parts, the one that proves most first.
+    /// All parts, the most conclusive first.
     pub const ALL: [Self; 3] = [Self::HeldOut, Self::ChosenOn, Self::Scene];
 
-    /// The part of a recording of this name (its file's, without the ending).
+    /// Returns the part of a recording with this name (its file name without the ending).
     pub fn of_recording(name: &str) -> Self {
         if CHOSEN_ON.iter().any(|chosen| name.starts_with(chosen)) { Self::ChosenOn } else { Self::HeldOut }
     }
 }
 
-/// Why the study could not be run.
 #[derive(Debug, thiserror::Error)]
 pub enum BaselinesError {
     #[error("{name}: {source}")]
     Settings { name: String, source: SettingsError },
-    /// Shorter than the delay.
     #[error(
         "{name} has {samples} samples; a delay of {delay_ms} ms at {rate_hz} Hz needs more than {needed}; record longer or give a shorter --delay-ms"
     )]
     TooShort { name: String, samples: usize, needed: usize, delay_ms: f64, rate_hz: f64 },
-    /// Reflection makes no error, so nothing can be compared with it.
+    /// Reflection has no error, so no ratio can be computed.
     #[error(
         "{name}: the delayed force is never wrong at a delay of {delay_ms} ms (no force, or less than half a sample of delay); give a recording with contact or a longer --delay-ms"
     )]
     NothingToCompare { name: String, delay_ms: f64 },
 }
 
-/// The study: what to compare on, and how.
+/// The sources and settings of the study.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Recordings and scenes, with the part that each belongs to.
+    /// Recordings and scenes, each with its part.
     pub sources: Vec<(Source, Split)>,
-    /// Delays of the link, s.
     pub delays_s: Vec<f64>,
-    /// Let the program's own modes learn the full matrix `M`.
+    /// Whether the program's own modes learn the full matrix `M`.
     pub cross_talk: bool,
     /// Files that were read.
     pub inputs: Vec<PathBuf>,
 }
 
-/// One mode on one source at one delay.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     pub source: String,
     pub split: Split,
     pub delay_ms: f64,
     pub mode: Mode,
-    /// Mean error at the horizon, in the unit of the source.
+    /// Mean prediction error at the horizon, in the unit of the source.
     pub error: f64,
     /// The same of delayed reflection.
     pub held_error: f64,
-    /// The first over the second.
+    /// `error / held_error`.
     pub ratio: f64,
 }
 
@@ -100,23 +96,19 @@ pub struct Mean {
     pub split: Split,
     pub delay_ms: f64,
     pub mode: Mode,
-    /// Number of sources.
     pub sources: usize,
     /// Mean of the ratios, and its 95 % confidence interval over the sources.
     #[serde(flatten)]
     pub ratio: Interval,
 }
 
-/// The results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// What the interval is, in words.
+    /// Description of the interval.
     pub interval: &'static str,
-    /// Recordings that constants were chosen on: beginnings of their names.
+    /// Prefixes of the recordings on which constants were chosen.
     pub chosen_on: [&'static str; CHOSEN_ON.len()],
-    /// Means over the sources.
     pub means: Vec<Mean>,
-    /// Every source alone.
     pub rows: Vec<Row>,
 }
 

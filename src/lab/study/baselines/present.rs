@@ -6,7 +6,7 @@ use super::{CHOSEN_ON, Interval, Mean, Report, Row, Split, modes};
 use crate::Findings;
 
 impl Findings for Report {
-    /// One table for each part of the material.
+    /// Returns one table for each part of the material.
     fn text(&self) -> String {
         // Writing into a String cannot fail.
         let mut text = format!(
@@ -58,7 +58,7 @@ impl Report {
         names
     }
 
-    /// Every source alone.
+    /// Returns every source alone.
     fn csv(&self) -> String {
         let mut text = "source,split,delay_ms,mode,error,held_error,ratio\n".to_owned();
         for Row { source, split, delay_ms, mode, error, held_error, ratio } in &self.rows {

@@ -1,24 +1,22 @@
-//! The mean of a few numbers and how far it can be trusted.
+//! The mean of a few numbers and its uncertainty.
 
 use serde::Serialize;
 
-/// The interval in words.
+/// Description of the interval.
 pub(super) const WORDS: &str =
     "95 % confidence interval of the mean over the sources, by Student's t with n - 1 degrees of freedom";
 
-/// A mean with its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// The mean.
     pub mean: f64,
     /// Lower and upper end; `None` for a single number.
     pub low: Option<f64>,
-    /// Upper end.
+    /// `None` for a single number.
     pub high: Option<f64>,
 }
 
 impl Interval {
-    /// Of the mean of independent numbers.
+    /// Computes the interval for the mean of independent numbers.
     pub fn of_mean(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -32,7 +30,7 @@ impl Interval {
 }
 
 /// The 97.5 % quantile of Student's t: a table for few degrees of freedom, beyond it the expansion about the normal one
-/// (Abramowitz and Stegun, 26.7.5), good to 0.001.
+/// (Abramowitz and Stegun, 26.7.5), accurate to 0.001.
 fn t_975(freedom: usize) -> f64 {
     const TABLE: [f64; 8] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306];
     if let Some(t) = freedom.checked_sub(1).and_then(|index| TABLE.get(index)) {
@@ -63,6 +61,6 @@ mod tests {
         let half = 4.303 / 3.0_f64.sqrt();
         assert!((mean - 2.0).abs() < 1e-12);
         assert!((low.unwrap() - (2.0 - half)).abs() < 1e-9 && (high.unwrap() - (2.0 + half)).abs() < 1e-9);
-        assert_eq!(Interval::of_mean(&[0.4]).low, None, "one number tells nothing of its spread");
+        assert_eq!(Interval::of_mean(&[0.4]).low, None, "a single number has no spread");
     }
 }

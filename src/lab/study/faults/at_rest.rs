@@ -87,7 +87,7 @@ fn in_memory(what: &str, gravity: &GravityModel) -> Result<Special, FaultsError>
     })
 }
 
-/// The hand opens on a rig without presence detection: the force that the gates still allow.
+/// The hand opens on a rig without presence detection: measures the force that the gates still allow.
 fn let_go() -> Result<Special, FaultsError> {
     let tissue = Scene::load("peg_transfer")?.tissue;
     let wrong = |reason: String| FaultsError::Calibration(ValidationError::Calibration(reason));

@@ -20,20 +20,19 @@ use super::{
 use crate::validation::experiment;
 
 const PERIOD_S: f64 = 1e-3;
-/// Longest time to reach a situation of the task, ticks.
+/// Timeout for reaching a situation of the task, ticks.
 const TIMEOUT: u32 = 12_000;
 /// Ticks before any fault is injected. By then the monitors of stuck values have seen noise and tremor.
 const WARM_UP: u32 = 10_500;
-/// Interval between the moments tried, ticks.
+/// Interval between the tested moments, ticks.
 const APART: u32 = 1300;
 /// Delay of the link in the simulated rig, ticks.
 const LINK_TICKS: u32 = 50;
-/// Forces that differ by more than this are different, N.
+/// A difference of forces above this is visible, N.
 const HINT_N: f64 = 0.05;
 /// Positions closer than this are equal, m.
 const NEAR_M: f64 = 5e-4;
 
-/// World, machine and twin.
 #[derive(Clone, Debug)]
 pub(super) struct Bench {
     pub(super) rig: Faulty,
@@ -113,14 +112,13 @@ impl Bench {
         }
     }
 
-    /// Gives a command to both.
     pub(super) fn obey(&mut self, command: Command) {
         let now_s = f64::from(self.tick) * PERIOD_S;
         self.machine.obey(command, now_s);
         self.twin.obey(command, now_s);
     }
 
-    /// The machine's timing, altered by the fault.
+    /// Returns the machine's timing, altered by the fault.
     fn timing(&self, now_s: f64) -> Timing {
         let honest = Timing { now_s, ..Timing::default() };
         let Some((fault, since)) = self.fault else { return honest };
@@ -143,7 +141,7 @@ impl Bench {
         Timing { now_s, missed_now, ..honest }
     }
 
-    /// Commands of a faulty screen in this tick.
+    /// Sends the commands of a faulty screen in this tick.
     fn mischief(&mut self, now_s: f64) {
         match self.fault {
             Some((Kind::CommandsPoisoned, since)) if self.tick - since < 4 => {
@@ -209,7 +207,7 @@ impl Bench {
         })
     }
 
-    /// Whether the fault is outside the rig and has taken effect: parcels that a link loses or corrupts are missed only
+    /// Whether the fault is outside the rig and has taken effect: packets that a link loses or corrupts are missed only
     /// when they are due.
     fn is_elsewhere(&self) -> bool {
         let Some((fault, since)) = self.fault else { return false };
@@ -287,7 +285,6 @@ impl Bench {
         self.outputs[FAULTY].hand_force_n
     }
 
-    /// State of the machine.
     pub(super) fn state(&self) -> LoopState {
         self.machine.pair(Side::Right).map_or(LoopState::Idle, nima_machine::teleop::Pair::state)
     }

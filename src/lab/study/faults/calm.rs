@@ -1,4 +1,4 @@
-//! Fault-free machines at ordinary work, which must report nothing.
+//! Fault-free machines at ordinary work, which must not report anything.
 
 use nima_core::impedance::Mode;
 use nima_machine::{
@@ -18,11 +18,10 @@ const DELAYS_S: [f64; 4] = [0.0, 0.01, 0.05, 0.3];
 /// Fault-free runs and their false alarms.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Calm {
-    /// Number of runs.
     pub runs: usize,
     /// Their total duration, s of loop time.
     pub seconds: f64,
-    /// Everything that was reported, with scene, mode, delay and time.
+    /// Every report, with scene, mode, delay and time.
     pub false_alarms: Vec<String>,
 }
 
@@ -75,7 +74,7 @@ pub(super) fn runs(seconds: f64) -> Result<Calm, FaultsError> {
     Ok(calm)
 }
 
-/// A rig with an arm, whose readings take the way of a rig of devices.
+/// A rig with an arm, whose readings are processed like those of a rig with devices.
 fn on_arm(calm: &mut Calm, sensor: SensorAt, mode: Mode, seconds: f64) -> Result<(), FaultsError> {
     let mut bench = Bench::new(sensor, mode, calm.runs as u64)?;
     bench.obey(Command::Engage);

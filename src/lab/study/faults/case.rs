@@ -1,5 +1,5 @@
-//! Runs one case: starts the fault, steps the machine and its fault-free twin, and records what is reported, when, and
-//! the error of the force until then.
+//! Runs one case: starts the fault, steps the machine and its fault-free twin, and records the first report, its time,
+//! and the error of the force until then.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use super::{
     bench::{Bench, Step},
 };
 
-/// Ticks until the second event of a situation: drives come on, the clutch is released.
+/// Ticks until the second event of a situation: drives switch on, the clutch is released.
 const LATER: u32 = 200;
 /// Ticks for which a machine is observed after it has latched.
 const AFTER_LATCH: u32 = 100;
@@ -24,16 +24,16 @@ const AFTER_LATCH: u32 = 100;
 const APART: u32 = 5;
 /// A fault that has been invisible for this many ticks counts as starting again when it becomes visible.
 const PAUSE: u32 = 20;
-/// A force is compared with the twin's forces up to this many ticks before and after, because the age gate accepts data
-/// that are 5 ms late.
+/// A force is compared with the twin's forces up to this many ticks earlier and later, because the age gate accepts
+/// data that are 5 ms late.
 const SHIFT: usize = 5;
 
-/// The healthy machine predicts over a delay and so has an error too. A machine counts as no worse if its mean error
-/// against the force at the tip exceeds its twin's by no more than this, N, and its largest error by no more than
-/// [`HARMLESS_N`].
+/// The healthy machine predicts over a delay and so has an error too. A machine counts as no worse if its mean error,
+/// compared with the force at the tip, exceeds its twin's by no more than this, N, and its largest error by no more
+/// than [`HARMLESS_N`].
 const MEAN_N: f64 = 0.02;
 
-/// Errors against the present force at the tip, N.
+/// Errors relative to the current force at the tip, N.
 #[derive(Clone, Copy, Debug, Default)]
 struct Errors {
     sum_n: f64,
@@ -41,7 +41,7 @@ struct Errors {
 }
 
 impl Errors {
-    /// Adds an error; none where the force at the tip is not known.
+    /// Adds an error; ignored while the force at the tip is unknown.
     fn add(&mut self, error_n: f64) {
         if error_n.is_finite() {
             self.sum_n += error_n;
@@ -122,7 +122,7 @@ pub(super) fn tried(mut bench: Bench, kind: Kind, sensor: SensorAt, mode: Mode, 
         }
         let Some(step) = bench.step() else { break };
         watch.look(tick, &step);
-        // If the fault moved the arm elsewhere, the twin may latch; then it can no longer be compared with.
+        // If the fault moved the arm elsewhere, the twin may latch and can no longer serve as a reference.
         if step.twin.state.is_latched() && !begun_latched {
             break;
         }
@@ -144,7 +144,7 @@ impl Watch {
         if self.told.is_none() {
             let state = || format!("state {}", step.machine.state.word().to_lowercase());
             self.told = told(step).map(|what| (what, tick));
-            // A state that differs for only a tick or two means nothing.
+            // A state that differs for only a tick or two does not count.
             if self.told.is_none() && self.apart == APART {
                 self.told = Some((state(), tick));
             }
@@ -157,7 +157,7 @@ impl Watch {
         if self.told.is_some() && self.felt && gone && self.zero.is_none() {
             self.zero = Some(tick);
         }
-        // The rig receives in each tick the outputs of the previous one; so does the twin's.
+        // The rig receives in each tick the outputs of the previous one; so does the twin's rig.
         if self.zero.is_none() {
             self.peak_error_n = self.peak_error_n.max((applied_n - step.twin_before_n).norm());
             self.compare(applied_n, step.twin_before_n);
@@ -231,7 +231,7 @@ impl Watch {
     }
 }
 
-/// What the machine reports in this tick and its twin does not.
+/// Returns what the machine reports in this tick and its twin does not.
 fn told(step: &Step) -> Option<String> {
     let machine = &step.machine;
     let twin = &step.twin;

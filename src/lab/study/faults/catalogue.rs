@@ -1,12 +1,11 @@
-//! Every kind of fault on the virtual clock: its description, its location, and, where it cannot be detected, why not.
+//! Every kind of fault on the virtual clock: its description, its location, and, if it cannot be detected, the reason.
 
 use serde::Serialize;
 
-/// Where a fault is located.
+/// Location of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
-    /// The force sensor.
     Force,
     /// Orientation of the wrist, from accelerometer or arm.
     Orientation,
@@ -29,7 +28,6 @@ impl Part {
     }
 }
 
-/// A fault on the virtual clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -133,7 +131,6 @@ impl Kind {
         K::CommandsPoisoned, K::CommandsDoubled, K::SliderShakes,
     ];
 
-    /// Where it is located.
     pub const fn part(self) -> Part {
         match self {
             K::ImuStops
@@ -186,11 +183,11 @@ impl Kind {
         }
     }
 
-    /// Readings of a block that is told again and again.
+    /// Readings of a repeated block.
     pub(super) const BLOCK: usize = 32;
 
-    /// Whether it is in a device's readings or in what a device does: then it is tried on rigs with an arm too. The others do not depend on
-    /// the rig.
+    /// Whether it is in the readings or the actions of a device: then it is also tested on rigs with an arm. The others
+    /// do not depend on the rig.
     pub const fn is_of_devices(self) -> bool {
         match self.part() {
             Part::Force => !matches!(self, K::ForceLateTold | K::ForceLost),
@@ -206,7 +203,6 @@ impl Kind {
         matches!(self.part(), Part::Orientation)
     }
 
-    /// Description of the fault.
     #[rustfmt::skip]
     pub const fn words(self) -> &'static str {
         match self {
@@ -222,7 +218,7 @@ impl Kind {
             K::ForceDrift => "bias drifts by 0.5 N/s",
             K::ForceSlowDrift => "bias drifts by 0.05 N/s",
             K::ForceSign => "sign of the force is inverted",
-            K::ForceAxes => "axes of the force are exchanged",
+            K::ForceAxes => "axes of the force are swapped",
             K::ForceSpike => "one sample is 10 N off",
             K::ForceSpikes => "every 50th sample is 10 N off",
             K::ForceSaturated => "force saturates 1 N above its present value",
@@ -230,7 +226,7 @@ impl Kind {
             K::ForceLate => "force is 50 ms late, without time stamps",
             K::ForceLateTold => "samples are 15 ms old, with time stamps",
             K::ForceDoubled => "every sample comes twice, every second is lost",
-            K::ForceReordered => "neighbouring samples are exchanged",
+            K::ForceReordered => "neighbouring samples are swapped",
             K::ForceNan => "force is NaN",
             K::ForceInfinite => "force is infinite",
             K::ForceAbsurd => "force is 1e18 N",
@@ -248,7 +244,7 @@ impl Kind {
             K::HandJump => "handle's position jumps by 20 mm",
             K::HandSpike => "one handle position is 20 mm off",
             K::HandSign => "handle's axes are inverted",
-            K::HandAxes => "handle's axes are exchanged",
+            K::HandAxes => "handle's axes are swapped",
             K::HandNan => "handle's position is NaN",
             K::HandNoise => "handle's position has 0.3 mm of noise",
             K::HandLate => "handle's position comes 50 ms late",
@@ -263,7 +259,7 @@ impl Kind {
             K::TipSign => "arm's axes are inverted",
             K::TipNan => "arm's position is NaN",
             K::ArmIgnores => "arm does not move",
-            K::ArmAxes => "arm moves along exchanged axes",
+            K::ArmAxes => "arm moves along swapped axes",
             K::DrivesOff => "drives switch themselves off",
             K::PedalDown => "pedal is stuck down",
             K::PedalUp => "pedal is stuck up",
@@ -277,20 +273,20 @@ impl Kind {
             K::PeriodsMissed => "100 periods are missed",
             K::FewPeriodsMissed => "10 periods are missed",
             K::LinkSilent => "link loses everything",
-            K::LinkHalf => "link loses every second parcel",
+            K::LinkHalf => "link loses every second packet",
             K::LinkLate => "link is 100 ms later than programmed",
             K::LinkJitter => "link is 3 ms later than programmed",
             K::LinkSwaps => "link exchanges neighbours",
             K::LinkDoubles => "link delivers everything twice",
             K::LinkPoisoned => "link delivers NaN",
-            K::LinkRepeats => "link repeats one parcel under new times",
+            K::LinkRepeats => "link repeats one packet under new times",
             K::CommandsPoisoned => "commands with NaN and out of range",
             K::CommandsDoubled => "every command comes twice",
             K::SliderShakes => "gain is commanded up and down in each tick",
         }
     }
 
-    /// If it is accepted as fresh data by design: why.
+    /// If it is accepted as fresh data by design: the reason.
     pub const fn passes_as_fresh(self) -> Option<&'static str> {
         match self {
             K::LinkJitter | K::LinkHalf | K::LinkSwaps | K::ForceDoubled | K::ForceReordered | K::ForceSpikes => {
@@ -300,7 +296,7 @@ impl Kind {
         }
     }
 
-    /// If it cannot be distinguished from normal operation: why. The error must then be bounded.
+    /// If it cannot be distinguished from normal operation: the reason. The error must then be bounded.
     pub const fn untellable(self) -> Option<&'static str> {
         Some(match self {
             K::ForceStep => "an instrument that moves 0.2 mm between two readings could have met something stiff",

@@ -1,36 +1,34 @@
-//! A link that loses, delays, reorders, duplicates, corrupts or repeats parcels; it wraps the loop's own link.
+//! A link that loses, delays, reorders, duplicates, corrupts or repeats packets; it wraps the loop's own link.
 
 use nima_core::impedance::Parcel;
 use nima_machine::teleop::{Link, ProgrammedLink};
 
-/// What happens to the parcels.
+/// An impairment of the packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Impairment {
-    /// Nothing.
     #[default]
     None,
-    /// Loses every parcel.
+    /// Loses every packet.
     LosesAll,
-    /// Loses every second parcel.
+    /// Loses every second packet.
     LosesHalf,
-    /// Delivers every parcel this much too late, s.
+    /// Delivers every packet late by this much, s.
     Late(f64),
-    /// Exchanges neighbouring parcels.
+    /// Swaps neighbouring packets.
     Swaps,
-    /// Delivers every parcel twice.
+    /// Delivers every packet twice.
     Doubles,
     /// Replaces numbers of the force by NaN.
     Poisons,
-    /// Repeats one parcel under new time stamps.
+    /// Repeats one packet under new time stamps.
     Repeats,
 }
 
-/// The loop's link with an impairment.
 #[derive(Clone, Debug)]
 pub(super) struct ImpairedLink {
     line: ProgrammedLink,
     impairment: Impairment,
-    /// Parcels offered since the impairment changed, and one that is held back.
+    /// Packets offered since the impairment changed, and one that is held back.
     offered: usize,
     kept: Parcel,
 }

@@ -1,4 +1,5 @@
-//! Injects faults between a rig and the loop: from some tick on, the loop's inputs and the rig's outputs are altered.
+//! Injects faults between a rig and the loop: from a given tick on, the loop's inputs and the rig's outputs are
+//! altered.
 
 use std::collections::VecDeque;
 
@@ -23,7 +24,7 @@ pub(super) struct Situation {
 }
 
 impl Situation {
-    /// These inputs in the situation; `None` where nothing is connected.
+    /// Returns these inputs in the situation; `None` if nothing is connected.
     fn of(self, inputs: &Inputs) -> Option<Inputs> {
         let mut inputs = *inputs;
         inputs.powered &= self.powered;
@@ -47,19 +48,17 @@ pub(super) struct Faulty {
     first: Option<(Inputs, Outputs)>,
     before: Option<Inputs>,
     late: VecDeque<Inputs>,
-    /// What is told again and again.
+    /// The repeated block.
     block: Vec<Inputs>,
     event: Option<DeviceEvent>,
     /// Last measurements of the rig, before the fault is applied.
     pub(super) truth: [Option<Inputs>; SIDES],
-    /// Last outputs of the loop.
     wanted: [Outputs; SIDES],
-    /// What the rig received of them last.
+    /// The outputs that the rig last received.
     pub(super) applied: Outputs,
 }
 
 impl Faulty {
-    /// A rig without a fault.
     pub(super) fn new(rig: Subject) -> Self {
         Self {
             rig,
@@ -93,7 +92,7 @@ impl Faulty {
         match self.fault {
             Some(Kind::HandleWithoutForce) => outputs.hand_force_n = Vector3::zeros(),
             Some(Kind::HandleInverted) => outputs.hand_force_n = -outputs.hand_force_n,
-            // Even then the motors obey the switch.
+            // Even then the motors follow the switch.
             Some(Kind::HandleKeepsForce) if outputs.drives => {
                 outputs.hand_force_n = self.first.map_or(outputs, |(_, first)| first).hand_force_n;
             }
@@ -137,7 +136,7 @@ impl Faulty {
         }
     }
 
-    /// The block that was recorded first, again and again.
+    /// Repeats the block that was recorded first.
     fn again(&mut self, inputs: &Inputs) -> Inputs {
         let place = self.age as usize - 1;
         if place < Kind::BLOCK {
@@ -146,7 +145,7 @@ impl Faulty {
         self.block.get(place % Kind::BLOCK).copied().unwrap_or(*inputs)
     }
 
-    /// Neighbouring samples in exchanged order: alternately the present sample and the one before the previous.
+    /// Neighbouring samples swapped: alternately the current sample and the one before the previous.
     fn reordered(&self, inputs: &Inputs, before: &Inputs) -> Sensed {
         let two_ago = self.late.iter().rev().nth(2).unwrap_or(before);
         match self.age % 2 {
@@ -252,7 +251,7 @@ impl Faulty {
     }
 }
 
-/// Exchanges x and z.
+/// Swaps x and z.
 fn exchanged(v: Vector3<f64>) -> Vector3<f64> {
     Vector3::new(v.z, v.y, v.x)
 }

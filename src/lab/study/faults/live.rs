@@ -26,14 +26,13 @@ use serde::Serialize;
 
 use super::Verdict;
 
-/// A fault that is not tried on the virtual clock.
+/// A fault that is not tested on the virtual clock.
 #[derive(Clone, Debug, Serialize)]
 pub struct Special {
-    /// What fails.
+    /// Description of the fault.
     pub what: String,
-    /// Outcome.
     pub verdict: Verdict,
-    /// What was reported, or why the fault is harmless.
+    /// The report, or why the fault is harmless.
     pub told: String,
     /// Time to detection, ms, if it was measured.
     pub detection_ms: Option<f64>,
@@ -41,27 +40,26 @@ pub struct Special {
     pub zero_ms: Option<f64>,
 }
 
-/// Why a fault could not be tried on the real clock.
+/// Why a fault could not be tested on the real clock.
 #[derive(Debug, thiserror::Error)]
 pub enum LiveError {
-    /// A scene or rig is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// The loop did not start.
     #[error(transparent)]
     Start(#[from] StartError),
     /// The loop was not engaged within 5 s.
-    #[error("the loop on the real clock did not engage within 5 s: other programs use too much processor time")]
+    #[error(
+        "the loop on the real clock did not engage within 5 s: other programs use too much processor time; close them"
+    )]
     NotEngaged,
-    /// The loop's thread panicked.
-    #[error("the loop's thread panicked: start the study again and report this")]
+    #[error("the loop's thread panicked; start the study again and report this")]
     Died,
-    /// The temporary folder could not be made.
-    #[error("the temporary folder cannot be created")]
+    /// The temporary folder could not be created.
+    #[error("cannot create the temporary folder")]
     Scratch(#[source] io::Error),
 }
 
-/// A rig that hangs once and records when its lever was pulled.
+/// A rig that hangs once and records when its emergency release was called.
 struct Hanging {
     rig: Worlds,
     /// Loop time at which it hangs, s, and duration.
@@ -120,7 +118,6 @@ fn until(handle: &Handle, good: impl Fn(&Tick) -> bool) -> Result<(), LiveError>
     Err(LiveError::NotEngaged)
 }
 
-/// Runs every fault on the real clock.
 pub(super) fn all() -> Result<Vec<Special>, LiveError> {
     let folder = tempfile::tempdir().map_err(LiveError::Scratch)?;
     Ok(vec![
@@ -172,7 +169,7 @@ fn hang(what: &str, length: Duration) -> Result<Special, LiveError> {
     Ok(Special { what: what.to_owned(), verdict, told, detection_ms: after_ms, zero_ms: after_ms })
 }
 
-/// Nobody reads the ticks: at 4 kHz the queue of 8192 is full after two seconds.
+/// No screen reads the ticks: at 4 kHz the queue of 8192 is full after two seconds.
 fn screen_hangs() -> Result<Special, LiveError> {
     let handle = start(&plan(4000.0)?)?;
     thread::sleep(Duration::from_millis(2500));
@@ -192,7 +189,7 @@ fn timing(summary: &Summary) -> String {
     format!("{} of {} periods missed, all counted", summary.missed, summary.missed + summary.ticks)
 }
 
-/// Runs the loop for one second beside this load.
+/// Runs the loop for one second under this load.
 fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Special, LiveError> {
     let handle = start(&plan(1000.0)?)?;
     until(&handle, |tick| tick.state == LoopState::Engaged)?;
@@ -222,7 +219,7 @@ fn beside(what: &str, load: impl Fn(&AtomicBool) + Send + Sync) -> Result<Specia
     })
 }
 
-/// Writes to the disk with synchronisation, 1 MB at a time, and a result file beside it.
+/// Writes to the disk with synchronisation, 1 MB at a time, and also writes a result file.
 fn slow_disk(stop: &AtomicBool, folder: &Path) {
     let bytes = vec![0x5a_u8; 1 << 20];
     while !stop.load(Ordering::Relaxed) {

@@ -1,11 +1,11 @@
-//! Injects faults of every kind in every state and measures what the machine reports, how soon, how soon the force is
-//! removed, and how large its error is until then.
+//! Injects faults of every kind in every state and measures the machine's reports, their delay, the time until the
+//! force is removed, and the maximum error until then.
 //!
 //! Each case compares a machine whose rig, clock, link or screen fails with a fault-free twin in the same world. Takes
 //! [`Options`]; returns a [`Report`] (ms, N). A case is *detected* (the machine reports a fault, a change of state, a
 //! refusal, a closed gate or an unusable force), *harmless* (there is no force and no motion; or the force in the hand
-//! differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is no further from the force at the tip than the
-//! twin's), *bounded* (it cannot be detected in principle; its largest error is given), or *silent*. Faults of threads
+//! differs from the twin's within 5 ms by at most [`HARMLESS_N`], or is at most as far from the force at the tip as the
+//! twin's), *bounded* (it cannot be detected in principle; its maximum error is given), or *silent*. Faults of threads
 //! and disks run on the real clock; faults of files need no clock.
 
 mod at_rest;
@@ -36,13 +36,12 @@ use crate::validation::ValidationError;
 /// A force in the hand that differs from the twin's by no more than this is harmless, N: the standard deviation of the
 /// tip force in the paper.
 pub const HARMLESS_N: f64 = 0.2;
-/// Modes that are tried: the default one, which keeps the most in memory, and the one that keeps nothing.
+/// Tested modes: the default one, which stores the most, and the one that stores nothing.
 const MODES: [Mode; 2] = [Mode::Best, Mode::Dfr];
 
-/// Why the study could not be made.
+/// Why the study could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum FaultsError {
-    /// A scene or rig is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
     #[error(transparent)]
@@ -51,12 +50,12 @@ pub enum FaultsError {
     Calibration(#[from] ValidationError),
     #[error(transparent)]
     Network(#[from] TipForceError),
-    /// The fault-free machine did not reach the situation in which a fault was to be tried.
+    /// The fault-free machine did not reach the situation for a fault.
     #[error(
-        "the fault-free machine is {state} where it should be {place}: a false alarm, or this study's scenes have changed"
+        "the fault-free machine is {state} but should be {place}: a false alarm, or this study's scenes have changed"
     )]
     NotReached { place: &'static str, state: String },
-    /// A fault on the real clock could not be tried.
+    /// A fault on the real clock could not be tested.
     #[error(transparent)]
     Live(#[from] LiveError),
 }
@@ -65,9 +64,8 @@ pub enum FaultsError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
-    /// No device is connected.
     Disconnected,
-    /// All devices deliver, drives off.
+    /// All devices deliver data, drives off.
     Idle,
     /// Engaging: the drives come on 200 ms later, while the fault is still present.
     Ready,
@@ -84,7 +82,6 @@ pub enum Place {
 }
 
 impl Place {
-    /// All of them.
     pub const ALL: [Self; 8] = [
         Self::Disconnected,
         Self::Idle,
@@ -150,7 +147,7 @@ pub enum Verdict {
     Detected,
     /// Cannot be detected in principle; the largest error is given.
     Bounded,
-    /// None of the above: not detected, and not harmless.
+    /// None of the above: neither detected nor harmless.
     Silent,
 }
 
@@ -158,12 +155,10 @@ pub enum Verdict {
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     pub kind: Kind,
-    /// Where the fault is located.
     pub part: Part,
-    /// Place of the force sensor.
+    /// Location of the force sensor.
     pub sensor: SensorAt,
     pub mode: Mode,
-    /// State of the machine when the fault began.
     pub place: Place,
     /// Number of the moment within that state.
     pub moment: u32,
@@ -180,20 +175,20 @@ pub struct Outcome {
     /// The same against the closest of the twin's forces within 5 ms before and after, N, because the age gate accepts
     /// data that are 5 ms late.
     pub error_n: f64,
-    /// Largest force commanded, N.
+    /// Maximum commanded force, N.
     pub most_n: f64,
     /// Largest change of that force in one tick, except a change to zero, N.
     pub step_n: f64,
 }
 
-/// Options: how much to try.
+/// Extent of the study.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Number of moments tried in each state with force; one in the other states.
+    /// Number of moments tested in each state with force; one in the other states.
     pub moments: u32,
-    /// Whether faults of threads, disks and files are tried too (some seconds on the real clock).
+    /// Whether faults of threads, disks and files are tested too (some seconds on the real clock).
     pub live: bool,
-    /// Duration of each fault-free run, in which nothing may be reported, s.
+    /// Duration of each fault-free run, which must be free of reports, s.
     pub calm_s: f64,
 }
 
@@ -204,7 +199,6 @@ pub struct Report {
     pub outcomes: Vec<Outcome>,
     /// Faults on the real clock, and of files.
     pub specials: Vec<Special>,
-    /// Fault-free runs.
     pub calm: Calm,
     /// Number of cases with each outcome.
     pub sums: Sums,
@@ -213,11 +207,10 @@ pub struct Report {
 /// Counts and percentiles of a report.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Sums {
-    /// Kinds of fault.
     pub kinds: usize,
     /// Cases on the virtual clock.
     pub cases: usize,
-    /// Of these, cases without force and motion.
+    /// Cases among them without force and motion.
     pub no_force: usize,
     pub harmless: usize,
     pub detected: usize,
@@ -225,17 +218,17 @@ pub struct Sums {
     pub silent: usize,
     /// Detected cases on the force path while engaged.
     pub on_force_path: usize,
-    /// Time to detection of these, median, ms.
+    /// Median time to detection of these, ms.
     pub detection_p50_ms: f64,
     /// 99th percentile, ms.
     pub detection_p99_ms: f64,
-    /// Largest, ms.
+    /// Maximum, ms.
     pub detection_max_ms: f64,
-    /// Largest error of a bounded case, N.
+    /// Maximum error of a bounded case, N.
     pub bounded_error_n: f64,
-    /// Largest force commanded in any case, N.
+    /// Maximum force commanded in any case, N.
     pub most_n: f64,
-    /// Largest change of the commanded force in one tick, N.
+    /// Maximum change of the commanded force in one tick, N.
     pub step_n: f64,
 }
 
@@ -309,7 +302,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     Ok(Report { outcomes, specials, calm, sums })
 }
 
-/// Tries every kind of fault in one state.
+/// Tests every kind of fault in one state.
 fn at(idle: &Bench, sensor: SensorAt, mode: Mode, place: Place, moments: u32) -> Result<Vec<Outcome>, FaultsError> {
     let mut outcomes = Vec::new();
     for moment in 0..if place.is_engaged() { moments } else { 1 } {

@@ -109,7 +109,7 @@ impl Report {
     }
 }
 
-/// The worst of some cases: outcome, slowest detection / removal of the force (ms), largest error (N).
+/// Returns the worst of some cases: outcome, slowest detection / removal of the force (ms), maximum error (N).
 fn cell(cases: &[&Outcome]) -> String {
     let Some(worst) = cases.iter().map(|outcome| outcome.verdict).max() else { return "-".to_owned() };
     let most = |of: fn(&Outcome) -> Option<f64>| cases.iter().filter_map(|outcome| of(outcome)).reduce(f64::max);

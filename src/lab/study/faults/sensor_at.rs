@@ -1,11 +1,11 @@
-//! Where the force is measured, and on which rig.
+//! Location of the force sensor, and the kind of rig.
 
 use nima_emulation::emulated::Wiring;
 use serde::Serialize;
 
 use super::{Kind, Place};
 
-/// Place of the force sensor.
+/// Location of the force sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorAt {
@@ -13,22 +13,21 @@ pub enum SensorAt {
     Tip,
     /// At the wrist, scene `palpation`, gravity calibrated.
     Wrist,
-    /// The same on rigs with an arm of joints, which turns the sensor: the devices of the emulated rig.
+    /// At the tip on rigs with a jointed arm, which rotates the sensor: the devices of the emulated rig.
     ArmTip,
-    /// See above.
+    /// At the wrist on the same rigs.
     ArmWrist,
-    /// Devices of a lab's own, the sensor at half of the loop's rate.
+    /// At the tip with devices of a lab's own design, the sensor at half the loop's rate.
     ExternalTip,
-    /// See above.
+    /// At the wrist with the same devices.
     ExternalWrist,
 }
 
 impl SensorAt {
-    /// The places on the simulated rig.
+    /// The locations on the simulated rig.
     pub const SIMULATED: [Self; 2] = [Self::Tip, Self::Wrist];
-    /// Those on rigs with an arm.
+    /// The locations on rigs with an arm.
     pub const ON_ARMS: [Self; 4] = [Self::ArmTip, Self::ArmWrist, Self::ExternalTip, Self::ExternalWrist];
-    /// All of them.
     pub const ALL: [Self; 6] =
         [Self::Tip, Self::Wrist, Self::ArmTip, Self::ArmWrist, Self::ExternalTip, Self::ExternalWrist];
 
@@ -40,7 +39,7 @@ impl SensorAt {
         matches!(self, Self::Wrist | Self::ArmWrist | Self::ExternalWrist)
     }
 
-    /// The devices around the world; none of the simulated rig.
+    /// The devices around the world; `None` for the simulated rig.
     pub(super) const fn wiring(self) -> Option<Wiring> {
         match self {
             Self::Tip | Self::Wrist => None,
@@ -60,12 +59,12 @@ impl SensorAt {
         }
     }
 
-    /// The states in which faults are tried: without an engagement the arm changes nothing.
+    /// The states in which faults are tested: without an engagement the arm changes nothing.
     pub(super) const fn places(self) -> &'static [Place] {
         if self.wiring().is_some() { &[Place::Free, Place::Contact] } else { &Place::ALL }
     }
 
-    /// Whether this kind of fault is tried here.
+    /// Whether this kind of fault is tested here.
     pub(super) const fn has(self, kind: Kind) -> bool {
         let has_imu = matches!(self, Self::Wrist | Self::ArmWrist);
         (has_imu || !kind.needs_wrist()) && (self.wiring().is_none() || kind.is_of_devices())

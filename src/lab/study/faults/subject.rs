@@ -1,7 +1,8 @@
-//! The rig whose devices fail: the simulated one, or an arm pair whose readings take the way of a rig of devices.
+//! The rig whose devices fail: the simulated one, or an arm pair whose readings are processed like those of a rig with
+//! devices.
 //!
-//! A fault alters readings in the device's own frame; what the loop gets is made of them afterwards. Of the simulated rig, which has no arm
-//! of joints, inputs and readings are the same.
+//! A fault alters readings in the device's own frame; the loop's inputs are computed from them afterwards. For the
+//! simulated rig, which has no jointed arm, inputs and readings are the same.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -19,27 +20,27 @@ use nima_simulation::{Worlds, scene::Scene};
 use super::{FaultsError, Kind, SensorAt, inject::FAULTY};
 use crate::validation::ValidationError;
 
-/// Numbers beyond this are refused by the drivers, N.
+/// The drivers refuse numbers beyond this, N.
 const POSSIBLE_N: f64 = 1e4;
-/// A joint that jumps, and one that drifts, rad and rad/s.
+/// Jump of a joint, and drift of a joint, rad and rad/s.
 const JOINT_JUMP_RAD: f64 = 0.2;
 const JOINT_DRIFT_RAD_S: f64 = 0.02;
 const PERIOD_S: f64 = 1e-3;
 
-/// The devices of an arm pair, what is made of their readings, and what would be made without the fault.
+/// The devices of an arm pair, the measurements computed from their readings, and the measurements without the fault.
 #[derive(Clone, Debug)]
 pub(super) struct ArmRig {
     devices: Clocked,
     given: Measured,
     truth: Measured,
     newest: ArmReadings,
-    /// The last readings, also where this tick has none.
+    /// The last readings, kept for ticks without new ones.
     known: ArmReadings,
     joints_first: Option<[f64; 7]>,
     block: Vec<[f64; 7]>,
 }
 
-/// See above.
+/// A simulated rig or an arm pair.
 #[derive(Clone, Debug)]
 pub(super) enum Subject {
     Simulated(Box<Worlds>),
@@ -71,12 +72,12 @@ impl Subject {
         })))
     }
 
-    /// Its readings are altered before inputs are made of them.
+    /// Whether its readings are altered before inputs are computed from them.
     pub(super) const fn is_arm(&self) -> bool {
         matches!(self, Self::Arm(_))
     }
 
-    /// Forgets an earlier fault.
+    /// Removes an earlier fault.
     pub(super) fn begin(&mut self) {
         if let Self::Arm(arm) = self {
             arm.joints_first = None;
@@ -84,7 +85,7 @@ impl Subject {
         }
     }
 
-    /// Gives outputs to the rig and reads it: the true inputs, and those of the failing side as they are to be altered.
+    /// Passes outputs to the rig and reads it: returns the true inputs, and those of the failing side for alteration.
     pub(super) fn read(&mut self, now_s: f64, outputs: &[Outputs; SIDES]) -> ([Option<Inputs>; SIDES], Option<Inputs>) {
         match self {
             Self::Simulated(worlds) => {
@@ -101,7 +102,7 @@ impl Subject {
         }
     }
 
-    /// The inputs that the loop gets when what was read was altered to this; `None`: the sensor tells nothing.
+    /// Returns the loop's inputs for these altered readings; `None` if the sensor returns nothing.
     pub(super) fn give(
         &mut self,
         now_s: f64,
@@ -118,7 +119,7 @@ impl Subject {
 
 const DELIVERING: Delivering = Delivering { handle: Some(true), follower: Some(true) };
 
-/// The readings of a simulated rig that these inputs would be made of, at the times of the true ones.
+/// Returns the readings of a simulated rig that correspond to these inputs, at the times of the true ones.
 fn raw_of(inputs: &Inputs) -> RawReadings {
     let RawReadings { handle, sensor, .. } = inputs.raw;
     let parts = match &inputs.sensed {
@@ -137,7 +138,7 @@ fn raw_of(inputs: &Inputs) -> RawReadings {
 }
 
 impl ArmRig {
-    /// Reads the devices; force and handle as inputs, in the frames of their devices.
+    /// Reads the devices; returns force and handle as inputs, in the frames of their devices.
     fn read(&mut self, now_s: f64, outputs: &Outputs) -> Option<Inputs> {
         self.devices.write(outputs, &self.given);
         self.newest = self.devices.read(now_s);

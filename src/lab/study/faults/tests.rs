@@ -52,7 +52,7 @@ fn a_healthy_machine_is_its_twin() {
     assert!(outcome[0].verdict == Verdict::Harmless && outcome[0].most_n > 0.5, "{outcome:?}");
 }
 
-/// A handle that trembles by itself runs ahead of the hand: whatever the governor makes of it, the hand feels no step.
+/// A handle that trembles by itself runs ahead of the hand: whatever the governor does, the hand must not feel a step.
 #[test]
 fn a_reading_that_trembles_makes_no_step_beyond_the_slew_limit() {
     for outcome in tried(SensorAt::Wrist, Place::Free, &[Kind::HandNoise]) {
@@ -60,7 +60,7 @@ fn a_reading_that_trembles_makes_no_step_beyond_the_slew_limit() {
     }
 }
 
-/// A sensor's own numbers are judged, also where the arm turns what the loop makes of them.
+/// A sensor's own numbers are judged, even if the arm rotates the loop's inputs.
 #[test]
 fn on_rigs_with_an_arm_what_a_sensor_repeats_takes_the_force_away_within_20_ms() {
     let kinds = [Kind::ForceFrozen, Kind::ForceAxisFrozen, Kind::ForceStep];

@@ -4,7 +4,7 @@ use fastrand::Rng;
 use nalgebra::SVector;
 use nima_core::safety::{ChainSettings, EnergyMode, Request};
 
-/// How the requested force varies for a while.
+/// Course of the requested force for a while.
 #[derive(Clone, Copy, Debug)]
 enum Pattern {
     NotANumber,
@@ -32,7 +32,7 @@ const PATTERNS: [Pattern; 10] = [
     Pattern::Honest,
 ];
 
-/// Changes to a chain by an operator or a faulty screen.
+/// A change to a chain by an operator or a faulty screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Meddling {
     Nothing,
@@ -43,7 +43,6 @@ pub(super) enum Meddling {
     Reset,
 }
 
-/// Generates the requests to one chain.
 #[derive(Debug)]
 pub(super) struct Adversary<'a, const D: usize> {
     rng: &'a mut Rng,
@@ -77,7 +76,7 @@ pub(super) fn settings(rng: &mut Rng) -> ChainSettings {
     }
 }
 
-/// Mostly a number from 0 to `most`; sometimes one outside that range, or NaN.
+/// Usually a number from 0 to `most`; sometimes one outside that range, or NaN.
 fn odd(rng: &mut Rng, most: f64) -> f64 {
     match rng.u32(..16) {
         0 => f64::NAN,
@@ -157,7 +156,6 @@ impl<'a, const D: usize> Adversary<'a, D> {
         }
     }
 
-    /// The next request.
     pub(super) fn request(&mut self) -> Request<D> {
         if self.rng.u32(..if self.permitted { 200 } else { 20 }) == 0 {
             self.permitted = !self.permitted;
@@ -184,7 +182,7 @@ impl<'a, const D: usize> Adversary<'a, D> {
         }
     }
 
-    /// A change to the chain before the next request.
+    /// Returns a change to the chain before the next request.
     pub(super) fn meddling(&mut self) -> Meddling {
         match self.rng.u32(..100) {
             0 => Meddling::OrdinaryGain(odd(self.rng, 3.0)),

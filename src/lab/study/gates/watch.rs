@@ -1,4 +1,4 @@
-//! Checks everything that leaves a chain and counts violations. It knows the limits, not how the gates keep them.
+//! Checks every output of a chain and counts violations. It uses only the limits, not the implementation of the gates.
 
 use nalgebra::SVector;
 use nima_core::{
@@ -7,7 +7,7 @@ use nima_core::{
 };
 use serde::Serialize;
 
-/// Rounding allowed in a limit, relative.
+/// Relative rounding allowed in a limit.
 const ROUNDING: f64 = 1e-9;
 
 /// Number of violations of each limit.
@@ -15,9 +15,10 @@ const ROUNDING: f64 = 1e-9;
 pub struct Breaches {
     /// A force that is not finite.
     pub not_finite: u64,
-    /// A force above the ceiling, or above the device's maximum.
+    /// A force above the force limit, or above the device's maximum.
     pub ceiling: u64,
-    /// A change between consecutive forces above the slew limit, but for a fall to zero where a gate withdraws the force at once.
+    /// A change between consecutive forces above the slew limit, except a fall to zero where a gate withdraws the force
+    /// at once.
     pub slew: u64,
     /// A gain that changed faster than its rate.
     pub gain_rate: u64,
@@ -30,7 +31,6 @@ pub struct Breaches {
 }
 
 impl Breaches {
-    /// The sum of all.
     pub const fn total(&self) -> u64 {
         let Self { not_finite, ceiling, slew, gain_rate, gain_range, uncalled, energy } = *self;
         not_finite + ceiling + slew + gain_rate + gain_range + uncalled + energy
@@ -47,7 +47,7 @@ pub(crate) struct Watch<const D: usize> {
     pub(super) last_s: Option<f64>,
     pub(super) last_n: SVector<f64, D>,
     pub(super) gain: f64,
-    /// The governor found before the last one that the hand has let go.
+    /// Whether the governor had already detected a release before the last force.
     pub(super) let_go: bool,
     /// Whether a gain above 1 has been confirmed and not withdrawn.
     pub(super) above_one: bool,
@@ -83,7 +83,7 @@ impl<const D: usize> Watch<D> {
         let finite = now_n.iter().all(|f| f.is_finite()) && report.gain.is_finite();
         let let_go = [Gate::Permission, Gate::Validity].iter().any(|gate| report.acted(*gate))
             || [Reason::HandGone, Reason::NotFinite].contains(&report.reason(Gate::Governor));
-        // Only a handle that was let go, or just was, loses its force or its brake faster: to zero.
+        // Only a released handle loses its force or its brake faster: to zero.
         let lets_go = report.reason(Gate::Governor) == Reason::LetGo;
         let falls = (let_go || lets_go || self.let_go) && now_n.norm() == 0.0;
         let step_n = self.slew_n_per_s * dt_s.min(self.period_s);
@@ -143,7 +143,7 @@ mod tests {
         assert_eq!(
             seen(Vector3::zeros(), forbidden, 1.0),
             Breaches::default(),
-            "letting go is no breach of the slew limit"
+            "a release does not violate the slew limit"
         );
         let pump = GateReport { stored_j: 2.0 * MOST_J, ..good };
         assert_eq!(seen(near, pump, 1.0), Breaches { energy: 1, ..Breaches::default() });

@@ -1,4 +1,4 @@
-//! What must be reached, and what was.
+//! The targets, and the results.
 
 use nima_core::impedance::Mode;
 use nima_machine::runtime::ClockProfile;
@@ -9,8 +9,8 @@ use super::{
     plan::{CLOCK_JITTER, judged_line},
 };
 
-/// The aims: error by loss and jitter (%), energy (mJ), force after the last data (ms), step on return (mm), error of the clock (ms),
-/// time until its step is named (ms).
+/// Targets: additional error by loss and jitter (%), energy (mJ), force after the last data (ms), step on return (mm),
+/// error of the clock (ms), time until a clock step is reported (ms).
 const COST_PERCENT: f64 = 10.0;
 const INJECTED_MJ: f64 = 1.0;
 const FORCE_AFTER_MS: f64 = 20.0;
@@ -18,27 +18,27 @@ const RETURN_MM: f64 = 0.2;
 const CLOCK_MS: f64 = 0.2;
 const NAMED_MS: f64 = 1000.0;
 
-/// One aim and what was reached.
+/// One target and its result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Aim {
-    /// When the ticks of both loops wake.
+    /// Clock of both loops.
     pub clock: ClockProfile,
-    /// What is measured, with its unit.
+    /// Measured quantity, with its unit.
     pub what: String,
-    /// At most this.
+    /// Maximum.
     pub limit: f64,
-    /// Largest of all cells that it concerns.
+    /// Maximum over all cells to which it applies.
     pub worst: f64,
-    /// In which cell.
+    /// The cell with that maximum.
     pub place: String,
-    /// Number of cells that it concerns, and of those that missed it.
+    /// Number of cells to which it applies, and number of those that missed it.
     pub cells: usize,
-    /// See above.
+    /// Number of cells that missed it.
     pub missed: usize,
 }
 
 impl Aim {
-    /// Over the cells for which `of` gives a number; `None` if there is none.
+    /// Computes the result over the cells for which `of` returns a number; `None` if there is none.
     fn over<'a>(
         what: &str,
         limit: f64,
@@ -54,13 +54,14 @@ impl Aim {
             worst: *worst,
             place: row.place(),
             cells: measured.len(),
-            // A value that is not a number is a miss.
+            // A value that is not a number counts as a miss.
             missed: measured.iter().filter(|(value, _)| value.is_nan() || *value > limit).count(),
         })
     }
 }
 
-/// All aims on one clock. Limits of the gates and what happens after a stop concern every mode, the quality of the force the one that is judged.
+/// Returns all targets on one clock. Limits of the gates and the behaviour after a stop apply to every mode, the
+/// quality of the force only to the judged one.
 pub(super) fn aims(rows: &[&Row], judged: Mode) -> Vec<Aim> {
     let all = || rows.iter();
     let ours = || rows.iter().filter(move |row| row.mode == judged);
@@ -84,7 +85,7 @@ pub(super) fn aims(rows: &[&Row], judged: Mode) -> Vec<Aim> {
         Aim::over("energy beyond the tissue's own without a latched stop, mJ", INJECTED_MJ, ours(), injected),
         Aim::over("force after the last data, ms", FORCE_AFTER_MS, all(), |row| Some(row.force_after_data_ms)),
         Aim::over("step of the tip on return, mm", RETURN_MM, all(), |row| row.return_step_mm),
-        Aim::over("machines that drove again unasked", 0.0, all(), |row| Some(f64::from(row.resumed))),
+        Aim::over("machines that resumed without a command", 0.0, all(), |row| Some(f64::from(row.resumed))),
         Aim::over("error of the clock with 1 ms jitter, ms", CLOCK_MS, all(), clock),
         Aim::over("until a step of 50 ms of the clock is named, ms", NAMED_MS, all(), named),
     ]

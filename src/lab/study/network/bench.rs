@@ -1,4 +1,5 @@
-//! Two whole machines on one virtual clock: the console's with the hand, the follower's with arm and tissue, and a bad line between them.
+//! Two whole machines on one virtual clock: the console's with the hand, the follower's with arm and tissue, and an
+//! impaired line between them.
 
 use std::collections::BTreeMap;
 
@@ -23,12 +24,12 @@ use crate::clocks;
 
 /// Ticks per second.
 pub(super) const RATE_HZ: f64 = 1000.0;
-/// Seeds of the two directions: the same in every cell, so that cells compare.
+/// Seeds of the two directions: the same in every cell, so that cells can be compared.
 const SEEDS: [u64; 2] = [1, 2];
-/// What is due within this counts as due now, s: the rounding of times.
+/// Tolerance for the rounding of times, s.
 const ROUNDING_S: f64 = 1e-9;
 
-/// A simulated workplace. It lives in true time, whatever the clock of its machine says.
+/// A simulated workplace. It runs in true time, whatever its machine's clock shows.
 #[derive(Debug)]
 pub(super) struct Place {
     pub(super) world: World,
@@ -54,21 +55,22 @@ impl Rig for Place {
     }
 }
 
-/// When the ticks of one machine come.
+/// Tick times of one machine.
 struct Pace {
     times: TickTimes,
-    /// Period in which the next tick wakes, and its time since the loop was started.
+    /// Period in which the next tick wakes up, and its time since the loop was started.
     due: u64,
     time: TickTime,
 }
 
 impl Pace {
     fn new(clock: VirtualClock) -> Self {
-        // The first one is at its deadline, so that both machines begin together.
+        // The first tick is at its deadline, so that both machines begin together.
         Self { times: clock.tick_times(RATE_HZ), due: 0, time: TickTime::default() }
     }
 
-    /// How late a tick of this period wakes, if it has one: the whole lateness, and that within the period, s.
+    /// Returns how late the tick of this period wakes up, if there is one: the whole delay, and the delay within the
+    /// period, s.
     fn tick_in(&mut self, period: u32) -> Option<(TickTime, f64)> {
         if self.due != u64::from(period) {
             return None;
@@ -86,7 +88,7 @@ struct Machine<R> {
     pace: Pace,
     supervisor: VirtualSupervisor,
     tick: Option<Tick>,
-    /// Faults that it has raised, and how often.
+    /// Raised faults, and their numbers.
     faults: BTreeMap<String, u32>,
 }
 
@@ -137,16 +139,16 @@ pub(super) struct Bench {
     /// Periods since the line was opened, and until the loops were started.
     pub(super) tick: u32,
     begun: u32,
-    /// What the operator has commanded and the console's loop has not obeyed yet.
+    /// The operator's command that the console's loop has not executed yet.
     command: Option<Command>,
-    /// Tick in which the newest command that the follower has was given.
+    /// Tick of the newest command that has reached the follower.
     newest: Option<u32>,
 }
 
-/// What is seen of one tick.
+/// Observations of one tick.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
-    /// Of the console's loop, and whether it is of this period.
+    /// The console's tick, and whether it belongs to this period.
     pub(super) console: Tick,
     pub(super) is_new: bool,
     pub(super) states: [LoopState; 2],
@@ -154,9 +156,9 @@ pub(super) struct Seen {
     pub(super) hand_m: Vector3<f64>,
     pub(super) tip_m: Vector3<f64>,
     pub(super) tip_n: Vector3<f64>,
-    /// Tick in which the newest command that the follower has was given.
+    /// Tick of the newest command that has reached the follower.
     pub(super) newest: Option<u32>,
-    /// How long the payloads of this tick were under way to the follower and to the console, ticks: sum and number.
+    /// Transmission times of this tick's payloads to the follower and to the console, ticks: sum and number.
     pub(super) under_way: [(u32, u32); 2],
 }
 
@@ -218,18 +220,18 @@ impl Bench {
         [self.console.rig.wire(), self.follower.rig.wire()]
     }
 
-    /// Faults that the console and the follower have raised.
+    /// Faults raised by the console and the follower.
     pub(super) const fn faults(&self) -> [&BTreeMap<String, u32>; 2] {
         [&self.console.faults, &self.follower.faults]
     }
 
-    /// One period of both machines; `None` before both loops have had a tick.
+    /// Runs one period of both machines; `None` before both loops have had a tick.
     pub(super) fn step(&mut self, command: Option<Command>) -> Option<Seen> {
         let period = self.ticks();
         self.command = command.or(self.command.take());
         let console = self.console.pace.tick_in(period);
         let follower = self.follower.pace.tick_in(period);
-        // In the order in which they wake.
+        // In the order in which they wake up.
         let follower_first =
             console.zip(follower).is_some_and(|((_, console_s), (_, follower_s))| follower_s < console_s);
         if let (Some((time, late_s)), true) = (follower, follower_first) {
@@ -263,7 +265,7 @@ impl Bench {
         })
     }
 
-    /// A tick of the console that wakes so late in this period, s.
+    /// Runs a tick of the console that wakes up this late in the period, s.
     fn step_console(&mut self, time: TickTime, late_s: f64) {
         let now_s = self.now_s() + late_s;
         let [there, back] = &mut self.lines;
@@ -276,7 +278,7 @@ impl Bench {
         self.console.rig.wire_mut().out.drain(..).for_each(|bytes| there.send(now_s, &bytes));
     }
 
-    /// The same of the follower, whose clock differs.
+    /// Runs a tick of the follower, whose clock differs.
     fn step_follower(&mut self, time: TickTime, late_s: f64) {
         let now_s = self.now_s() + late_s;
         let ahead_s = self.ahead_s();
@@ -292,7 +294,8 @@ impl Bench {
     }
 }
 
-/// One tick of the line alone: play-out and copies become what they are on a line that has been open for a while.
+/// Runs one tick of the line alone, so that playout delay and redundancy adapt as on a line that has been open for a
+/// while.
 fn measure([console, follower]: &mut [End; 2], [there, back]: &mut [Line; 2], tick: u32, ahead_s: f64) {
     let now_s = f64::from(tick) / RATE_HZ;
     let pass = |end: &mut End, from: &mut Line, to: &mut Line, ahead_s: f64| {
@@ -301,7 +304,7 @@ fn measure([console, follower]: &mut [End; 2], [there, back]: &mut [Line; 2], ti
             end.arrive(&bytes, came_s + ahead_s);
         }
         end.receive(now_s + ahead_s, &mut |_| {});
-        // As long as what a follower sends in most ticks, and no message.
+        // As long as a follower's usual message.
         end.send(now_s + ahead_s, &[0xff; 40]);
         end.out.drain(..).for_each(|bytes| to.send(now_s, &bytes));
     };
@@ -309,7 +312,7 @@ fn measure([console, follower]: &mut [End; 2], [there, back]: &mut [Line; 2], ti
     pass(follower, there, back, ahead_s);
 }
 
-/// How long the payloads that `to` has just handed over were under way, ticks: sum and number.
+/// Returns the transmission times of the payloads just delivered by `to`, ticks: sum and number.
 fn under_way(from: &End, to: &End) -> (u32, u32) {
     let sent = to.taken.iter().filter_map(|number| from.sent.get(*number as usize));
     sent.fold((0, 0), |(sum, count), sent| (sum + to.tick - sent, count + 1))

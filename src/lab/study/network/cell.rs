@@ -1,4 +1,4 @@
-//! One cell: a run of both machines over one line in one mode, and what was seen in it.
+//! One cell: a run of both machines over one line in one mode, and its results.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Mode, OwnMotion};
@@ -13,31 +13,31 @@ use super::{
 };
 use crate::gates::{Breaches, Watch};
 
-/// How every cell is run: its parts, s, and what the console makes the force from.
+/// Parts of every cell's run, s, and the motion from which the console computes the force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Runs {
-    /// The line is open and measured, the loops do not run yet; with jitter, and without.
+    /// The line is open and being measured, the loops are not running yet; with jitter, and without.
     pub(super) known_s: [f64; 2],
-    /// Nobody is engaged.
+    /// Not engaged.
     pub(super) settle_s: f64,
-    /// Engaged, and not judged yet: the models learn.
+    /// Engaged, but not judged yet: the models learn.
     pub(super) learn_s: f64,
     /// Judged.
     pub(super) task_s: f64,
     pub(super) own_motion: OwnMotion,
 }
 
-/// A machine that has been stopped for so long holds still, s; after an engagement its tip is watched for so long, s.
+/// A stopped machine must be still after this time, s; after an engagement its tip is observed for this time, s.
 const HOLDS_AFTER_S: f64 = 0.1;
 const WATCHED_S: f64 = 0.1;
-/// The clock's estimate is compared with the truth every so many ticks.
+/// The clock estimate is compared with the true clock every this many ticks.
 const CLOCK_EVERY: u32 = 50;
 
-/// What is counted while a cell runs.
+/// Counters of a running cell.
 struct Counting {
     watch: Watch<3>,
     breaches: Breaches,
-    /// Ticks since a payload was last handed over to the console, and the most at which there was still force.
+    /// Ticks since the last payload was delivered to the console, and the maximum at which there was still force.
     silent: u32,
     force_after: u32,
     /// Ticks for which the follower has been stopped, and for which it has been engaged again since.
@@ -69,7 +69,7 @@ impl Counting {
         }
     }
 
-    /// The largest step of a tip that was held, until it has followed again for a moment.
+    /// Measures the largest step of a tip that was held, until it has followed again for a moment.
     fn look_at_tip(&mut self, seen: &Seen) {
         let [_, follower] = seen.states;
         self.stopped = if follower.is_latched() { self.stopped + 1 } else { 0 };
@@ -90,7 +90,6 @@ impl Counting {
     }
 }
 
-/// Runs a cell.
 pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, runs: Runs) -> Result<Row, NetworkError> {
     let Runs { known_s, settle_s, learn_s, task_s, own_motion } = runs;
     let known_s = known_s[usize::from(condition.jitter == Jitter::None)];
@@ -185,18 +184,18 @@ pub(super) fn measured(clock: VirtualClock, condition: Condition, mode: Mode, ru
     })
 }
 
-/// What became of the payloads to the follower and to the console.
+/// Returns the counts of the payloads to the follower and to the console.
 fn counts(bench: &Bench) -> [Counts; 2] {
     let [console, follower] = bench.ends();
     [follower, console].map(|end| end.stream.figures(bench.now_s()).counts)
 }
 
-/// Copies wanted and used at the end, to the follower and to the console.
+/// Returns the requested and used number of redundant copies at the end, to the follower and to the console.
 fn copies(bench: &Bench) -> [[usize; 2]; 2] {
     bench.ends().map(|end| end.stream.figures(bench.now_s()).copies).map(|copies| [copies.wanted, copies.used])
 }
 
-/// Shares of the payloads that were late, lost and recovered, %.
+/// Returns the fractions of payloads that were late, lost and recovered, %.
 fn shares(before: &[Counts; 2], after: &[Counts; 2]) -> [[f64; 3]; 2] {
     std::array::from_fn(|way| {
         let before = &before[way];

@@ -1,37 +1,37 @@
-//! What happens to the datagrams and to the clocks: the factors of the study.
+//! Impairments of the datagrams and the clocks: the factors of the study.
 
 use nima_network::impairment::{Flap, Jitter as LineJitter, Loss, OUTAGES, Settings};
 use serde::{Serialize, Serializer};
 
-/// Delays of the line in each direction, ms.
+/// In each direction, ms.
 pub const DELAYS_MS: [f64; 11] = [0.0, 5.0, 15.0, 36.0, 72.0, 100.0, 150.0, 300.0, 450.0, 600.0, 900.0];
-/// Jitters.
 pub const JITTERS: [Jitter; 5] =
     [Jitter::None, Jitter::Normal(5.0), Jitter::Normal(20.0), Jitter::Normal(50.0), Jitter::Pareto];
-/// Shares of datagrams that are lost, %.
+/// Fractions of datagrams lost, %.
 pub const LOSSES_PERCENT: [f64; 6] = [0.0, 1.0, 5.0, 10.0, 20.0, 30.0];
 /// Mean lengths of bursts of loss, ms.
 pub const BURSTS_MS: [f64; 3] = [10.0, 50.0, 200.0];
 /// Mean (s) and shape of the Pareto jitter: one datagram in a thousand is 90 ms late.
 const PARETO: LineJitter = LineJitter::Pareto { mean_s: 5e-3, shape: 3.0 };
-/// A line that breaks off for a moment, too short for a fault.
+/// A line that is interrupted for a moment, too short for a fault.
 const FLAP: Flap = Flap { down_s: 0.05, every_s: 1.0 };
-/// How far the follower's clock is ahead, s, and when it is set (s of the run) and by how much (s), and how much faster it may run.
+/// Offset of the follower's clock, s; time at which it is set (s of the run) and size of the step (s); and its maximum
+/// rate error.
 const AHEAD_S: f64 = 1800.0;
 const CLOCK_SET_AT_S: f64 = 12.0;
 const CLOCK_STEP_S: f64 = 0.05;
 const CLOCK_DRIFT: f64 = 1e-4;
-/// Delay of the longer direction where they differ, ms.
+/// Delay of the longer direction if they differ, ms.
 const LONG_WAY_MS: f64 = 100.0;
 
-/// How much longer than the delay a datagram takes. A late one holds up those behind it.
+/// Additional delay of a datagram. A late one delays those behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Jitter {
-    /// No longer.
+    /// None.
     None,
     /// The absolute value of a normal number with this deviation, ms.
     Normal(f64),
-    /// A Pareto number with a mean of 5 ms: rarely by very much.
+    /// A Pareto number with a mean of 5 ms: rarely very large.
     Pareto,
 }
 
@@ -52,32 +52,31 @@ impl Serialize for Jitter {
     }
 }
 
-/// What happens besides delay, jitter and loss.
+/// An impairment other than delay, jitter and loss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Happening {
-    /// Nothing.
+    /// None.
     Nothing,
     /// No connection for 0.8 s of every 4 s, the published profile.
     Outages,
     /// No connection for 50 ms of every second.
     Flap,
-    /// The follower's clock is set 50 ms forward.
+    /// The follower's clock is set forward by 50 ms.
     ClockForward,
-    /// The follower's clock is set 50 ms back.
+    /// The follower's clock is set back by 50 ms.
     ClockBack,
     /// The follower's clock runs 100 ppm fast.
     ClockDrift,
     /// One datagram in twenty is overtaken by those of the next 10 ms.
     Reorder,
-    /// Every fifth datagram comes twice.
+    /// Every fifth datagram arrives twice.
     Duplicates,
-    /// The way back takes 100 ms.
+    /// The return direction takes 100 ms.
     Asymmetric,
 }
 
 impl Happening {
-    /// Each of them.
     pub const ALL: [Self; 9] = [
         Self::Nothing,
         Self::Outages,
@@ -114,20 +113,20 @@ impl Happening {
 /// One combination of the factors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Condition {
-    /// Delay in each direction, ms.
+    /// In each direction, ms.
     pub delay_ms: f64,
-    /// On top of it.
+    /// In addition to the delay.
     pub jitter: Jitter,
-    /// Share of datagrams lost, %.
+    /// Fraction of datagrams lost, %.
     pub loss_percent: f64,
-    /// Mean length of the bursts in which they are lost, ms; `None`: each for itself.
+    /// Mean length of the bursts in which they are lost, ms; `None` for independent losses.
     pub burst_ms: Option<f64>,
-    /// What else happens.
+    /// Other impairment.
     pub happening: Happening,
 }
 
 impl Condition {
-    /// A line that only takes this long, ms.
+    /// A line with only this delay, ms.
     pub const fn clean(delay_ms: f64) -> Self {
         Self { delay_ms, jitter: Jitter::None, loss_percent: 0.0, burst_ms: None, happening: Happening::Nothing }
     }
@@ -137,7 +136,7 @@ impl Condition {
         *self == Self::clean(self.delay_ms)
     }
 
-    /// The line from console to follower, and the one back.
+    /// Returns the line from console to follower, and the one back.
     pub(super) fn lines(&self) -> [Settings; 2] {
         let share = self.loss_percent / 100.0;
         let there = Settings {

@@ -1,4 +1,4 @@
-//! One end of the stream on the virtual clock: what the endpoint does with a socket, without one.
+//! One end of the stream on the virtual clock: the endpoint's work without a socket.
 
 use nima_machine::remote::Wire;
 use nima_network::{
@@ -7,7 +7,7 @@ use nima_network::{
     wire::DATAGRAM_MAX,
 };
 
-/// A stream as a wire of the loop. Its datagrams wait in `out` until the bench takes them.
+/// A stream as the loop's link. Its datagrams wait in `out` until the bench takes them.
 #[derive(Debug)]
 pub(super) struct End {
     pub(super) stream: Box<Stream>,
@@ -16,9 +16,9 @@ pub(super) struct End {
     pub(super) tick: u32,
     /// When each payload was sent.
     pub(super) sent: Vec<u32>,
-    /// Numbers of the payloads that were handed over in this tick.
+    /// Numbers of the payloads delivered in this tick.
     pub(super) taken: Vec<u64>,
-    /// When a step of a clock was found.
+    /// When a clock step was detected.
     pub(super) stepped: Option<u32>,
     sent_s: f64,
     datagram: [u8; DATAGRAM_MAX],
@@ -38,9 +38,9 @@ impl End {
         }
     }
 
-    /// Takes a datagram that came at this time of this machine's clock, s.
+    /// Processes a datagram that arrived at this time of this machine's clock, s.
     pub(super) fn arrive(&mut self, datagram: &[u8], came_s: f64) {
-        // A datagram that comes twice is refused; the line makes such ones.
+        // Duplicates are refused; the line creates some.
         let accepted = self.stream.receive(datagram, came_s);
         if accepted.is_ok_and(|accepted| accepted.step.is_some()) {
             self.stepped.get_or_insert(self.tick);

@@ -1,8 +1,10 @@
-//! Two machines over a bad line: what the hand feels, in every mode, over delay, jitter, loss, outages and faults of a clock.
+//! Two machines over an impaired line: the force in the hand, in every mode, over delay, jitter, loss, outages and
+//! clock faults.
 //!
-//! Takes [`Options`]; returns a [`Report`]: one [`Row`] per cell, and the [`Aim`]s with what was reached. A cell is a run of two whole
-//! loops on the virtual clock, the console's with the hand and the follower's with arm and tissue: those of `nima console --follower` and
-//! `nima follower`, joined by the stream of `nima-network` through its impaired line, each with late ticks of its own. Deterministic.
+//! Takes [`Options`]; returns a [`Report`]: one [`Row`] per cell, and the [`Aim`]s with their results. A cell is a run
+//! of two whole loops on the virtual clock, the console's with the hand and the follower's with arm and tissue: those
+//! of `nima console --follower` and `nima follower`, connected by the stream of `nima-network` through its impaired
+//! line, each with its own late ticks. Deterministic.
 
 mod aims;
 mod bench;
@@ -36,16 +38,14 @@ use self::{
     plan::{Cell, judged_line, plan, runs},
 };
 
-/// Why the study could not be made.
+/// Why the study could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// Rig or scene cannot be had.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// Settings out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// No keys could be made.
+    /// No keys could be generated.
     #[error(transparent)]
     Keys(#[from] KeyError),
 }
@@ -53,90 +53,88 @@ pub enum NetworkError {
 /// One cell. Pairs are: to the follower, to the console.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// When the ticks of both loops wake.
+    /// Clock of both loops.
     pub clock: ClockProfile,
     /// The line and the clocks.
     #[serde(flatten)]
     pub condition: Condition,
-    /// Mode that rendered.
+    /// Rendering mode.
     pub mode: Mode,
-    /// Mean error of the force in the hand against the true force of the tissue at the moment when the follower has the present command,
-    /// N, while engaged.
+    /// Mean error of the force in the hand, compared with the true force of the tissue at the time when the follower
+    /// has the current command, N, while engaged.
     pub error_n: f64,
-    /// The same of what the mode asked for, before the gates.
+    /// The same for the mode's requested force, before the gates.
     pub asked_error_n: f64,
     /// Mean force of the tissue, N.
     pub tissue_n: f64,
-    /// `error_n` over that with the same delay and nothing else.
+    /// `error_n` as a ratio to the same delay without other impairments.
     pub over_clean: Option<f64>,
-    /// `error_n` over that of a line without jitter and loss that takes as long as this one's play-out; for the judged line only.
+    /// `error_n` as a ratio to a line without jitter and loss whose delay equals this line's playout delay; for the
+    /// judged line only.
     pub over_same_playout: Option<f64>,
-    /// `error_n` over that of delayed reflection over the same line.
+    /// `error_n` as a ratio to delayed reflection over the same line.
     pub over_reflection: Option<f64>,
-    /// Most net energy that the hand was given since an engagement, mJ.
+    /// Maximum net energy given to the hand since an engagement, mJ.
     pub injected_mj: f64,
-    /// What the true force would have given on the same way.
+    /// Energy that the true force would have given on the same path, mJ.
     pub tissue_injected_mj: f64,
-    /// Effective value of the force in the hand between 2 and 50 Hz, N.
+    /// RMS of the force in the hand between 2 and 50 Hz, N.
     pub oscillation_n: f64,
-    /// The same of the true force.
+    /// The same for the true force.
     pub tissue_oscillation_n: f64,
-    /// Forces above the ceiling.
+    /// Number of forces above the force limit.
     pub ceiling_breaches: u64,
-    /// Changes of the force above the slew limit.
+    /// Number of changes above the slew limit.
     pub slew_breaches: u64,
-    /// Longest time in contact (above 0.5 N) without force, ms, stops included.
+    /// Longest time in contact (above 0.5 N) without force, ms, including stops.
     pub without_force_ms: f64,
-    /// Longest time for which there was force after the last payload, ms.
+    /// Longest time with force after the last payload, ms.
     pub force_after_data_ms: f64,
-    /// Share of the judged time in which the console was engaged.
+    /// Fraction of the judged time in which the console was engaged.
     pub engaged: f64,
-    /// How often the console was stopped by a fault.
+    /// Number of stops of the console by a fault.
     pub stops: u32,
-    /// How often a machine drove again unasked.
+    /// Number of times that a machine resumed without a command.
     pub resumed: u32,
-    /// Faults of the console, and how often.
+    /// Faults of the console, and their numbers.
     pub console_faults: BTreeMap<String, u32>,
-    /// Faults of the follower.
     pub follower_faults: BTreeMap<String, u32>,
-    /// Largest step of the tip in a tick from a stop until it follows again, mm; `None` if there was no stop.
+    /// Maximum step of the tip in a tick between a stop and the resumed following, mm; `None` without a stop.
     pub return_step_mm: Option<f64>,
-    /// Mean time from sending to handing over, ms: the play-out delay, and what is late.
+    /// Mean time from sending to delivery, ms: the playout delay, and additional delay.
     pub under_way_ms: [f64; 2],
-    /// From a command to the answer to it at the end, as the console's loop has it, ms.
+    /// From a command to its answer, measured by the console's loop at the end, ms.
     pub round_trip_ms: f64,
-    /// Payloads that came after their time, %.
+    /// Payloads that arrived late, %.
     pub late_percent: [f64; 2],
-    /// Payloads that never came, %.
+    /// Payloads that never arrived, %.
     pub lost_percent: [f64; 2],
-    /// Payloads that came with a later datagram, %.
+    /// Payloads recovered from a later datagram, %.
     pub recovered_percent: [f64; 2],
-    /// Copies that were wanted and that fitted, at the end, of what the console and what the follower sends.
+    /// Redundant copies requested and fitting at the end, for the console's and for the follower's data.
     pub copies: [[usize; 2]; 2],
-    /// Largest error of the other clock as the console knows it, ms; 0 where that clock is set.
+    /// Maximum error of the console's estimate of the other clock, ms; 0 where that clock is set.
     pub clock_error_ms: f64,
     /// Its bound.
     pub clock_bound_ms: f64,
-    /// Time until both had named a step of the clock, ms.
+    /// Time until both had reported a clock step, ms.
     pub clock_step_named_ms: Option<f64>,
 }
 
-/// Result of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// What was run.
+    /// Extent of the run.
     pub extent: Extent,
     /// Mode that is judged.
     pub judged: Mode,
-    /// Motion from which the console makes the force.
+    /// Motion from which the console computes the force.
     pub own_motion: OwnMotion,
-    /// For how long a line has been open before the run, s: one with jitter, and one without.
+    /// How long a line has been open before the run, s: with jitter, and without.
     pub known_s: [f64; 2],
-    /// Length of a run, and of its judged part, s.
+    /// Duration of a run, and of its judged part, s.
     pub run_s: f64,
-    /// See above.
     pub judged_s: f64,
-    /// What must be reached.
+    /// Targets.
     pub aims: Vec<Aim>,
     /// Every cell.
     pub rows: Vec<Row>,
@@ -161,7 +159,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
             continue;
         }
         let playout_ms = row.under_way_ms.iter().sum::<f64>() / 2.0;
-        // Play-out adds a margin and what is left of a tick.
+        // The playout delay adds a margin and the remainder of a tick.
         let as_long = measured(cell.clock, Condition::clean(playout_ms.round() - 1.0), judged, runs)?;
         row.over_same_playout = Some(row.error_n / as_long.error_n);
     }
@@ -182,7 +180,7 @@ pub fn study(options: &Options, mut progress: impl FnMut(usize, usize, &str)) ->
     })
 }
 
-/// Runs these cells at the same time.
+/// Runs these cells in parallel.
 fn side_by_side(cells: &[Cell], runs: Runs) -> Result<Vec<Row>, NetworkError> {
     scope(|scope| {
         let running: Vec<_> = cells
@@ -193,7 +191,7 @@ fn side_by_side(cells: &[Cell], runs: Runs) -> Result<Vec<Row>, NetworkError> {
     })
 }
 
-/// Fills in what compares a cell with others.
+/// Computes the ratios between cells.
 fn compare(rows: &mut [Row]) {
     let key = |clock: ClockProfile, condition: &Condition, mode: Mode| format!("{clock} {condition:?} {mode}");
     let errors: HashMap<String, f64> =

@@ -1,31 +1,31 @@
-//! The operator of the study: engages once the line is known, and after a stop releases it and engages again, by hand.
+//! The study's operator: engages once the line is measured, and after a stop releases it and engages again, by hand.
 
 use nima_machine::messages::{Command, LoopState};
 
-/// Time in which the operator reacts to a stop, and pause between two attempts, s.
+/// The operator's reaction time to a stop, and pause between two attempts, s.
 const REACTS_S: f64 = 0.3;
 const AGAIN_S: f64 = 0.5;
 
-/// Watches both machines and commands at the console.
+/// Observes both machines and sends commands at the console.
 #[derive(Debug)]
 pub(super) struct Operator {
     next_s: f64,
     states: [LoopState; 2],
-    /// Whether an engagement was commanded since the machine was last stopped.
+    /// Whether an engagement has been commanded since the machine was last stopped.
     may_drive: [bool; 2],
-    /// How often the console was stopped by a fault.
+    /// Number of stops of the console by a fault.
     pub(super) stops: u32,
-    /// How often a machine drove again although nobody had asked for it.
+    /// Number of times that a machine resumed without a command.
     pub(super) resumed: u32,
 }
 
 impl Operator {
-    /// Engages at this time for the first time, s.
+    /// Engages for the first time at this time, s.
     pub(super) const fn new(from_s: f64) -> Self {
         Self { next_s: from_s, states: [LoopState::Disconnected; 2], may_drive: [false; 2], stops: 0, resumed: 0 }
     }
 
-    /// Looks at the states of console and follower.
+    /// Processes the states of console and follower.
     pub(super) fn look(&mut self, now_s: f64, states: [LoopState; 2]) {
         for (machine, (was, is)) in self.states.into_iter().zip(states).enumerate() {
             let begins = |of: fn(LoopState) -> bool| of(is) && !of(was);
@@ -41,7 +41,7 @@ impl Operator {
         self.states = states;
     }
 
-    /// What he commands now.
+    /// Returns the current command.
     pub(super) fn command(&mut self, now_s: f64) -> Option<Command> {
         if now_s < self.next_s {
             return None;

@@ -1,4 +1,4 @@
-//! Which cells are run.
+//! The cells of the study.
 
 use nima_core::impedance::{Mode, OwnMotion};
 use nima_machine::runtime::VirtualClock;
@@ -8,19 +8,19 @@ use super::{BURSTS_MS, Condition, DELAYS_MS, Happening, JITTERS, Jitter, LOSSES_
 
 /// Delay of the point around which each factor is varied alone, ms.
 pub const BASE_MS: f64 = 36.0;
-/// The line that may cost 10 % of error at most.
+/// On this line at most 10 % of additional error is allowed.
 pub(super) const JUDGED_JITTER: Jitter = Jitter::Normal(20.0);
 pub(super) const JUDGED_LOSS_PERCENT: f64 = 30.0;
 /// Jitter at which the clock is judged.
 pub(super) const CLOCK_JITTER: Jitter = Jitter::Normal(1.0);
-/// Loss in bursts, %.
+/// %.
 const BURST_LOSSES_PERCENT: [f64; 2] = [5.0, 20.0];
 
-/// How much is run.
+/// Extent of the study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Extent {
-    /// A few cells, each short.
+    /// A few short cells.
     Quick,
     /// Every mode over every delay; every other factor alone and loss with jitter at [`BASE_MS`], in three modes.
     Usual,
@@ -28,22 +28,20 @@ pub enum Extent {
     Full,
 }
 
-/// What to run.
+/// Options of the study.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// How much.
     pub extent: Extent,
-    /// When the ticks of both loops wake, in the order of the tables.
+    /// Clocks of both loops, in the order of the tables.
     pub clocks: Vec<VirtualClock>,
-    /// In these modes, the first of which is judged; if none is given, in all, and the default one is judged. Delayed reflection is
-    /// always among them: the others are compared with it.
+    /// The modes, the first of which is judged. If empty, all modes are run and the default one is judged. Delayed
+    /// reflection is always included, because the others are compared with it.
     pub modes: Vec<Mode>,
-    /// Motion from which the console makes the force.
+    /// Motion from which the console computes the force.
     pub own_motion: OwnMotion,
 }
 
 impl Options {
-    /// The mode that is judged.
     pub fn judged(&self) -> Mode {
         self.modes.first().copied().unwrap_or(Mode::Best)
     }
@@ -68,7 +66,7 @@ pub(super) const fn runs(options: &Options) -> Runs {
     }
 }
 
-/// What is run.
+/// A run: clock, condition and mode.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     pub(super) clock: VirtualClock,
@@ -76,7 +74,7 @@ pub(super) struct Cell {
     pub(super) mode: Mode,
 }
 
-/// The cells, in the order in which they are run.
+/// Returns the cells, in the order in which they are run.
 pub(super) fn plan(options: &Options) -> Vec<Cell> {
     let cells = of_one_clock(options);
     let on = |clock: &VirtualClock| {

@@ -1,4 +1,4 @@
-//! The study of bad lines as tables (text, Markdown, CSV) and as a picture.
+//! The study of impaired lines as tables (text, Markdown, CSV) and as a picture.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -18,9 +18,7 @@ const CSV_HEADER: &str = "clock,mode,delay_ms,jitter_ms,loss_percent,burst_ms,ha
     round_trip_ms,late_there_percent,late_back_percent,lost_there_percent,lost_back_percent,recovered_there_percent,\
     recovered_back_percent,clock_error_ms,clock_bound_ms,clock_step_named_ms\n";
 
-const CELLS_HEADER: &str = "| mode | delay (ms) | jitter (ms) | loss (%) | besides | error (N) | of clean | of dfr | energy (mJ) | tissue's (mJ) \
-    | 2-50 Hz (N) | tissue's (N) | no force (ms) | after data (ms) | stops | step (mm) | there, back (ms) | late (%) | lost (%) | recovered (%) |\n\
-    |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+const CELLS_HEADER: &str = "| mode | delay (ms) | jitter (ms) | loss (%) | other | error (N) | of clean | of dfr | energy (mJ) | tissue's (mJ) | 2-50 Hz (N) | tissue's (N) | no force (ms) | after data (ms) | stops | step (mm) | there, back (ms) | late (%) | lost (%) | recovered (%) |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 impl Condition {
     /// Loss for tables.
@@ -29,7 +27,7 @@ impl Condition {
         format!("{}{}", self.loss_percent, burst.unwrap_or_default())
     }
 
-    /// How many factors besides the delay are not at rest.
+    /// Number of factors, other than the delay, that differ from their default.
     fn factors(&self) -> usize {
         let jitters = self.jitter != Jitter::None;
         let loses = self.loss_percent > 0.0;
@@ -138,13 +136,13 @@ impl Row {
     }
 }
 
-/// A force, or that there was none.
+/// A force, or a text if there was none.
 fn newtons(value_n: f64) -> String {
     if value_n.is_finite() { format!("{value_n:.3}") } else { "never engaged".to_owned() }
 }
 
 impl Report {
-    /// The modes in the order in which they were run.
+    /// Returns the modes in the order in which they were run.
     fn modes(&self) -> Vec<Mode> {
         let mut modes = Vec::new();
         for row in &self.rows {
@@ -159,28 +157,28 @@ impl Report {
         self.rows.iter().find(|row| row.mode == mode && row.condition == *condition)
     }
 
-    /// The clocks in the order in which they were run.
+    /// Returns the clocks in the order in which they were run.
     fn clocks(&self) -> Vec<ClockProfile> {
         let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
         clocks.dedup();
         clocks
     }
 
-    /// What was found on this clock.
+    /// Returns the results on this clock.
     fn on(&self, clock: ClockProfile) -> Self {
         let rows = self.rows.iter().filter(|row| row.clock == clock).cloned().collect();
         let aims = self.aims.iter().filter(|aim| aim.clock == clock).cloned().collect();
         Self { aims, rows, ..self.clone() }
     }
 
-    /// Markdown for a document or a terminal.
+    /// Returns Markdown for a document or a terminal.
     pub fn markdown(&self) -> String {
         let on = |clock| clocks::heading(clock) + &self.on(clock).tables();
         let tables: String = self.clocks().into_iter().map(on).collect();
         self.head() + &tables
     }
 
-    /// What was found on the only clock.
+    /// Returns the results on the only clock.
     fn tables(&self) -> String {
         let mut text = String::new();
         self.aims_table(&mut text);
@@ -206,8 +204,7 @@ impl Report {
             Extent::Full => "every combination (--full)",
         };
         format!(
-            "{} cells: {extent}. Runs of {} s on the virtual clock, of which the last {} s are judged; the line has been open for {} s before \
-             ({} s with jitter). Scene peg_transfer, delay in each direction, one seed. ETVO (Kroep and others, 2021) is not computed.\n\n",
+            "{} cells: {extent}. Runs of {} s on the virtual clock, of which the last {} s are judged; before each run the line has been open for {} s ({} s with jitter). Scene peg_transfer, delay in each direction, one seed. ETVO (Kroep and others, 2021) is not computed.\n\n",
             self.rows.len(),
             self.run_s,
             self.judged_s,
@@ -236,11 +233,11 @@ impl Report {
         text.push('\n');
     }
 
-    /// Error over the delay of a line that is otherwise perfect.
+    /// Writes the error over the delay of a line without other impairments.
     fn over_delay(&self, text: &mut String) {
         let delays: Vec<f64> =
             DELAYS_MS.into_iter().filter(|delay| self.row(&Condition::clean(*delay), self.judged).is_some()).collect();
-        text.push_str("Mean error (N) over the delay (ms) alone; the share of the time that was engaged, where not all:\n\n| mode |");
+        text.push_str("Mean error (N) over the delay (ms) alone; with the engaged fraction of the time if it was below 100 %:\n\n| mode |");
         for delay_ms in &delays {
             write!(text, " {delay_ms} |").ok();
         }
@@ -256,7 +253,7 @@ impl Report {
         text.push('\n');
     }
 
-    /// Error over loss and jitter.
+    /// Writes the error over loss and jitter.
     fn over_loss(&self, text: &mut String, mode: Mode) {
         let at =
             |jitter, loss_percent| self.row(&Condition { jitter, loss_percent, ..Condition::clean(BASE_MS) }, mode);
@@ -283,14 +280,14 @@ impl Report {
         text.push('\n');
     }
 
-    /// Every cell.
+    /// Returns every cell.
     pub fn csv(&self) -> String {
         let mut text = CSV_HEADER.to_owned();
         self.rows.iter().for_each(|row| row.csv(&mut text));
         text
     }
 
-    /// Error over the delay in every mode, and over the loss at each jitter.
+    /// Returns a plot of the error over the delay in every mode, and over the loss at each jitter.
     pub fn svg(&self) -> String {
         let colours = |modes: Vec<Mode>| modes.into_iter().enumerate();
         let delays = colours(self.modes()).map(|(colour, mode)| Series {
@@ -342,7 +339,7 @@ impl Report {
     }
 }
 
-/// Error of a row, with the share of the time that was engaged where that was not all.
+/// Returns the error of a row, with the engaged fraction of the time if it was below 100 %.
 fn short(row: &Row) -> String {
     let all = row.engaged > 0.999;
     if all || row.error_n.is_nan() {
@@ -369,7 +366,7 @@ impl Findings for Report {
     }
 
     fn files(&self) -> Vec<(String, String)> {
-        // The picture is of the first clock.
+        // The picture shows the first clock.
         let shown = self.clocks().first().map_or_else(|| self.clone(), |clock| self.on(*clock));
         vec![(".md".to_owned(), self.markdown()), (".csv".to_owned(), self.csv()), (".svg".to_owned(), shown.svg())]
     }

@@ -21,7 +21,7 @@ fn late_ticks_of_both_machines_cost_little_and_stop_nothing() {
     let [perfect, late] = [ClockProfile::Perfect, ClockProfile::Late { percent: 1.0 }]
         .map(|profile| on(VirtualClock { profile, seed: 1 }, OwnMotion::Follower, Condition::clean(36.0), Mode::Dfr));
     assert_eq!((late.stops, late.resumed, late.ceiling_breaches), (0, 0, 0), "{late:?}");
-    // Of what the mode asks for: how the gates take late ticks is judged by their own studies.
+    // For the mode's requested force: the effect of late ticks on the gates is judged in their own studies.
     assert!((late.asked_error_n / perfect.asked_error_n - 1.0).abs() < 0.1, "{perfect:?} {late:?}");
     assert!(late.error_n.to_bits() != perfect.error_n.to_bits() && late.clock == ClockProfile::Late { percent: 1.0 });
 }
@@ -77,7 +77,7 @@ fn an_outage_is_a_latched_stop_with_its_cause_and_what_comes_back_moves_nothing(
     assert!(row.force_after_data_ms <= 20.0 && row.engaged < 0.8, "{row:?}");
 }
 
-/// Too short for a fault of the link; the tip goes on meanwhile, which is no jump.
+/// Too short for a fault of the link; the tip keeps moving meanwhile, which is not a jump.
 #[test]
 fn a_break_of_50_ms_stops_nothing() {
     let row = quick(Condition { happening: Happening::Flap, ..Condition::clean(36.0) }, Mode::Dfr);

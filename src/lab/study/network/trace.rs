@@ -1,4 +1,4 @@
-//! What the hand felt in a run, against what it should have felt.
+//! The force in the hand during a run, compared with the correct force.
 
 use std::f64::consts::TAU;
 
@@ -6,10 +6,12 @@ use nalgebra::Vector3;
 
 use super::bench::RATE_HZ;
 
-/// In contact: the tissue's force is above this, N; and the hand feels nothing: its force is below that, N.
+/// In contact the tissue's force is above the first value, N; the hand feels nothing if its force is below the second,
+/// N.
 const CONTACT_N: f64 = 0.5;
 const NOTHING_N: f64 = 0.05;
-/// A command that takes so much longer than the one before it was lost, ticks: the follower does what came before.
+/// A command that takes this much longer than the previous one was lost, ticks: the follower keeps executing the
+/// earlier one.
 const LOST_TICKS: usize = 20;
 /// Band of oscillations, Hz.
 const BAND_HZ: [f64; 2] = [2.0, 50.0];
@@ -21,38 +23,39 @@ pub(super) struct Sample {
     pub(super) hand_m: Vector3<f64>,
     /// True force of the tissue, N.
     pub(super) tip_n: Vector3<f64>,
-    /// Force in the hand, which is held until the next tick, and what the mode asked for, N.
+    /// Force in the hand, which is held until the next tick, and the mode's requested force, N.
     pub(super) rendered_n: Vector3<f64>,
     pub(super) asked_n: Vector3<f64>,
     pub(super) is_engaged: bool,
-    /// Tick in which the newest command that the follower has was given.
+    /// Tick of the newest command that has reached the follower.
     pub(super) newest: Option<u32>,
 }
 
-/// All ticks of a run.
 #[derive(Debug)]
 pub(super) struct Trace {
     samples: Vec<Sample>,
     judged_from: usize,
 }
 
-/// What the hand felt.
+/// Measures of the force in the hand.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Felt {
-    /// Mean error of the force, and of what the mode asked for before the gates, N; NaN if the hand was never engaged.
+    /// Mean error of the force, and of the mode's requested force before the gates, N; NaN if the hand was never
+    /// engaged.
     pub(super) error_n: f64,
     pub(super) asked_error_n: f64,
     /// Mean of the tissue's force, N.
     pub(super) tissue_n: f64,
-    /// Most net energy that the hand was given since an engagement, and that the tissue's force would have given it on the same way, J.
+    /// Maximum net energy given to the hand since an engagement, and the energy that the tissue's force would have
+    /// given on the same path, J.
     pub(super) injected_j: f64,
     pub(super) tissue_injected_j: f64,
-    /// Effective value between 2 and 50 Hz of the force in the hand and of the tissue's, N.
+    /// RMS between 2 and 50 Hz of the force in the hand and of the tissue's force, N.
     pub(super) oscillation_n: f64,
     pub(super) tissue_oscillation_n: f64,
     /// Longest time in contact without force, ms.
     pub(super) without_force_ms: f64,
-    /// Share of the judged time.
+    /// Fraction of the judged time.
     pub(super) engaged: f64,
 }
 
@@ -66,8 +69,8 @@ impl Trace {
         self.samples.push(sample);
     }
 
-    /// For each tick the force of the tissue when the follower had the command of that tick, N. A command that was lost counts as one
-    /// that took as long as the last one that arrived. Ends where the run does.
+    /// Returns for each tick the force of the tissue at the time when the follower had the command of that tick, N. A
+    /// lost command counts as delayed like the last one that arrived. Ends with the run.
     fn due_n(&self) -> Vec<Vector3<f64>> {
         let mut due_n = Vec::with_capacity(self.samples.len());
         let mut lag = None;
@@ -82,7 +85,7 @@ impl Trace {
                 due_n.push(self.samples.get(due_n.len() + *lag).unwrap_or(sample).tip_n);
             }
         }
-        // What was commanded last and never arrived.
+        // The last commands, which never arrived.
         let lag = lag.unwrap_or(0);
         while let Some(sample) = self.samples.get(due_n.len() + lag) {
             due_n.push(sample.tip_n);
@@ -90,7 +93,7 @@ impl Trace {
         due_n
     }
 
-    /// What the hand felt.
+    /// Returns the measures of the force in the hand.
     pub(super) fn felt(&self) -> Felt {
         let due_n = self.due_n();
         let mut felt = Felt::default();
@@ -135,7 +138,7 @@ impl Trace {
                 felt.tissue_oscillation_n += tissue_swings_n.norm_squared();
             }
         }
-        // Without a tick that counts there is no mean: 0 / 0 is not a number.
+        // Without a counted tick there is no mean: 0 / 0 is NaN.
         for sum in [&mut felt.error_n, &mut felt.asked_error_n, &mut felt.tissue_n] {
             *sum /= engaged;
         }
@@ -147,7 +150,7 @@ impl Trace {
     }
 }
 
-/// A band of two low-passes of first order.
+/// A band-pass of two first-order low-passes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Band {
     slow_n: Vector3<f64>,
@@ -167,7 +170,7 @@ impl Band {
 mod tests {
     use super::*;
 
-    /// A hand on a sine of 1 cm at this frequency over a spring of 300 N/m that is felt so many ticks late.
+    /// A hand on a sine of 1 cm at this frequency over a spring of 300 N/m, felt this many ticks late.
     fn pressed(hz: f64, late: usize, travel: usize) -> Felt {
         let at_m = |tick: usize| Vector3::z() * 0.01 * (TAU * hz * tick as f64 / RATE_HZ).sin();
         let mut trace = Trace::new(1000);
@@ -198,7 +201,8 @@ mod tests {
     #[test]
     fn a_late_force_has_an_error_and_gives_energy() {
         let felt = pressed(1.0, 100, 40);
-        // Mean of 3 N times twice the sine of half the phase, and half of k a^2 times the sine of the phase in every period.
+        // Mean of 3 N times twice the sine of half the phase, and half of k a^2 times the sine of the phase in every
+        // period.
         let phase = TAU * 0.1;
         let error_n = 3.0 * 2.0 * (phase / 2.0).sin() * 2.0 / std::f64::consts::PI;
         assert!((felt.error_n - error_n).abs() < 0.01, "{felt:?}, {error_n}");

@@ -8,7 +8,7 @@ use super::{DELAYS_MS, LOOSE_N_M, OwnMotion, Report, STILL_M_S, Task, WAYS, stud
 use crate::{Experiment, Findings, clocks, release::ReleaseError};
 
 impl Findings for Report {
-    /// Power and error of each task, and the speed of loose grips, by delay, for each clock.
+    /// Returns power and error of each task, and the speed of loose grips, by delay, for each clock.
     fn text(&self) -> String {
         let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
         clocks.dedup();

@@ -1,4 +1,4 @@
-//! Power and loose grips, tried.
+//! Power and loose grips, tested.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn matched_on_the_handles_motion_does_not_drive_the_hand_and_late_reflection_doe
     }
 }
 
-/// What the best of two modes is worth must not depend on the tissue, the hand or the delay.
+/// The benefit of the better of two modes must not depend on the tissue, the hand or the delay.
 #[test]
 fn the_best_of_two_is_never_much_worse_than_anchored() {
     never_much_worse(&[100.0]);
@@ -38,7 +38,7 @@ fn the_best_of_two_is_never_much_worse_than_anchored_in_the_whole_grid() {
 
 const DELAYS_MS: [f64; 4] = [10.0, 50.0, 100.0, 300.0];
 
-/// That of the scene, softer, stiffer, and without friction.
+/// The scene's tissue, softer, stiffer, and without friction.
 fn tissues() -> [Tissue; 4] {
     let plain = tissue();
     [
@@ -68,7 +68,8 @@ fn never_much_worse(delays_ms: &[f64]) {
     assert!(worst.0 <= 1.01, "{worst:?}");
 }
 
-/// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, another one at every touch; one sequence for every `begin`.
+/// Stiffness 0.5 to 2 times the usual, surface 2 mm up or down, changing at every touch; one sequence for every
+/// `begin`.
 fn changing(plain: Tissue, begin: f64) -> impl Fn(u32) -> Tissue {
     move |touch| {
         let share = |step: f64| (f64::from(touch) * step + begin).fract() * 2.0 - 1.0;
@@ -91,7 +92,7 @@ fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_better_than_reflec
     }
 }
 
-/// Before errors that last counted at once, it was up to 19 % worse here, and more than 2 % in a fifth of all cases.
+/// Before persistent errors counted at once, it was up to 19 % worse here, and more than 2 % in a fifth of all cases.
 #[test]
 fn over_tissue_that_changes_at_every_touch_the_best_of_two_is_hardly_worse_than_anchored() {
     hardly_worse(&[tissue()], &[0.55]);
@@ -103,7 +104,7 @@ fn over_tissue_that_changes_the_best_of_two_is_hardly_worse_than_anchored_in_the
     hardly_worse(&tissues(), &[0.3, 0.55, 0.82]);
 }
 
-/// What is above 1.02 is lost at the first change of a run, before it is known that the tissue changes.
+/// Losses above 1.02 occur at the first change of a run, before it is known that the tissue changes.
 fn hardly_worse(tissues: &[Tissue], begins: &[f64]) {
     let mut worse = Vec::new();
     for delay_ms in DELAYS_MS {

@@ -1,4 +1,4 @@
-//! What is let go of: every clock, force, mode and delay, and other handles.
+//! The cases of the study: every clock, force, mode and delay, and other handles.
 
 use nima_core::impedance::Mode;
 use nima_machine::runtime::VirtualClock;

@@ -1,4 +1,4 @@
-//! The study of letting go as tables, as Markdown, and as a picture.
+//! The release study as tables, as Markdown, and as a picture.
 
 use std::fmt::Write as _;
 
@@ -12,28 +12,28 @@ use super::{
 use crate::{Findings, clocks};
 
 impl Findings for Report {
-    /// For each clock: a summary, other handles, and every letting go of 5 N.
+    /// Returns for each clock a summary, other handles, and every release of 5 N.
     fn text(&self) -> String {
         let on = |clock| clocks::heading(clock) + &self.on(clock).tables();
         self.clocks().into_iter().map(on).collect()
     }
 
     fn files(&self) -> Vec<(String, String)> {
-        // The picture is of the first clock.
+        // The picture shows the first clock.
         let shown = self.clocks().first().map_or_else(Self::default, |clock| self.on(*clock));
         vec![(".md".to_owned(), self.text()), (".svg".to_owned(), shown.svg())]
     }
 }
 
 impl Report {
-    /// The clocks, in the order in which they were tried.
+    /// Returns the clocks, in the order in which they were tested.
     fn clocks(&self) -> Vec<ClockProfile> {
         let mut clocks: Vec<_> = self.rows.iter().map(|row| row.clock).collect();
         clocks.dedup();
         clocks
     }
 
-    /// What was found on this clock.
+    /// Returns the results on this clock.
     fn on(&self, clock: ClockProfile) -> Self {
         let rows = self.rows.iter().filter(|row| row.clock == clock).copied().collect();
         Self { rows, worst: self.worst.iter().filter(|worst| worst.clock == clock).copied().collect() }
@@ -57,7 +57,8 @@ impl Report {
         text
     }
 
-    /// The worst of all delays and both situations, for each mode and force; rows in which the hand held no force are left out.
+    /// Writes the worst of all delays and both situations, for each mode and force; rows in which the hand held no
+    /// force are left out.
     fn summary(&self, text: &mut String) {
         writeln!(
             text,
@@ -98,7 +99,7 @@ impl Report {
     }
 
     fn handles(&self, text: &mut String) {
-        text.push_str("Other handles and brakes (the governor is told of 0.25 kg), dfr and anchored, worst of all delays, held and pressing:\n\n| contact (N) | brake (N s/m) | handle (kg) | Coulomb friction (N) | travel (mm) | peak (m/s) | energy (mJ) | after 100 ms (N) |\n|---|---|---|---|---|---|---|---|\n");
+        text.push_str("Other handles and brakes (the governor assumes 0.25 kg), dfr and anchored, worst of all delays, held and pressing:\n\n| contact (N) | brake (N s/m) | handle (kg) | Coulomb friction (N) | travel (mm) | peak (m/s) | energy (mJ) | after 100 ms (N) |\n|---|---|---|---|---|---|---|---|\n");
         for worst in &self.worst {
             let Worst { contact_n, brake_n_s_m, handle_kg, coulomb_n, travel_mm, .. } = *worst;
             let Worst { peak_m_s, energy_mj, force_after_100_ms_n, .. } = *worst;
@@ -111,7 +112,8 @@ impl Report {
         text.push('\n');
     }
 
-    /// Travel and energy over the delay, for the hand that held 5 N, each of the program's own modes with and without the governor.
+    /// Returns a plot of travel and energy over the delay, for the hand that held 5 N, for each of the program's own
+    /// modes with and without the governor.
     fn svg(&self) -> String {
         let chart = |title: &str, unit: &str, low: f64, high: f64, of: fn(&Row) -> f64| Chart {
             title: title.into(),

@@ -1,4 +1,4 @@
-//! Letting go, tried.
+//! The release, tested.
 
 use nima_core::impedance::Baseline;
 

@@ -1,4 +1,4 @@
-//! The leader's end of a replay, where the recording has its own motion.
+//! The leader's end of a replay, for a recording with the leader's motion.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -6,7 +6,7 @@ use nima_core::{
     signal::DelayLine,
 };
 
-/// Renders what came over the link from the leader's motion.
+/// Renders the data received over the link from the leader's motion.
 pub(super) struct Leader {
     renderer: Renderer,
     link: DelayLine<Parcel>,
@@ -14,18 +14,18 @@ pub(super) struct Leader {
 }
 
 impl Leader {
-    /// Behind a link of `delay` samples.
+    /// After a link of `delay` samples.
     pub(super) fn new(settings: &Settings, delay: usize) -> Result<Self, SettingsError> {
         Ok(Self { renderer: Renderer::new(settings)?, link: DelayLine::new(delay, Parcel::BLANK), delay })
     }
 
-    /// One tick: what the follower sends now, and where the leader is, m.
+    /// Runs one tick with the data sent by the follower now and the leader's position, m.
     pub(super) fn step(&mut self, leader_m: &Vector3<f64>, sent: &Parcel) -> Rendered {
         self.link.push(*sent);
         self.renderer.step(leader_m, self.link.get(self.delay))
     }
 
-    /// After a hole in the recording: nothing is known, and nothing is under way.
+    /// Called after a gap in the recording: clears everything, including data in transit.
     pub(super) fn reset(&mut self) {
         self.renderer.reset();
         self.link.clear();

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Figures;
 
-/// Spread of the ratio of both errors over the recordings.
+/// Spread over the recordings of the ratio of both errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RatioFigures {
     pub least: f64,
@@ -12,35 +12,34 @@ pub struct RatioFigures {
     pub greatest: f64,
 }
 
-/// Several recordings that were replayed with the same options.
+/// Several recordings replayed with the same options.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// How many.
     pub recordings: usize,
-    /// Samples in all of them, and those that were compared.
+    /// Samples in all of them, and compared samples.
     pub samples: usize,
     /// See `samples`.
     pub compared: usize,
-    /// Mean norm of the rendered force's error over all compared samples, and the largest.
+    /// Mean norm of the rendered force's error over all compared samples, and its maximum.
     pub error_mae: f64,
     /// See `error_mae`.
     pub error_max: f64,
     /// Mean norm of the held force's error over the same samples.
     pub hold_mae: f64,
-    /// Both of these divided; `None` if the held force is exact.
+    /// Ratio of these two; `None` if the held force is exact.
     pub ratio: Option<f64>,
     /// The same for each recording; `None` if the held force is exact in every one.
     pub ratios: Option<RatioFigures>,
-    /// Name of the recording with the greatest ratio.
+    /// Name of the recording with the largest ratio.
     pub worst: Option<String>,
     /// Compared samples for which the mode had no valid force.
     pub rejected: u64,
-    /// Holes in the recordings.
+    /// Gaps in the recordings.
     pub holes: u64,
 }
 
 impl Summary {
-    /// Of recordings with these names.
+    /// Summarises recordings with these names.
     ///
     /// ```
     /// use nima_study::replay::Summary;

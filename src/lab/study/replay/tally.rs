@@ -1,4 +1,4 @@
-//! Sums over a replay, from which its figures are made.
+//! Sums over a replay, from which its results are computed.
 
 use nalgebra::Vector3;
 use nima_core::{
@@ -11,7 +11,6 @@ use super::{
     figures::{ErrorFigures, Figures, Reconstruction, Reconstructions, Spread, TickTime},
 };
 
-/// Sums over the replay.
 #[derive(Default)]
 pub(super) struct Tally {
     error: Errors,

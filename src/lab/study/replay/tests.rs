@@ -2,7 +2,7 @@ use nima_core::impedance::Baseline;
 
 use super::*;
 
-/// A hand that presses a soft spring, on three axes, with a hole if `hole` is where one begins.
+/// A hand that presses a soft spring, on three axes, with a gap at index `hole`.
 fn sample(i: usize, hole: Option<usize>) -> Sample {
     let t_s = i as f64 * 1e-3 + if hole.is_some_and(|hole| i >= hole) { 1.0 } else { 0.0 };
     let position_m = Vector3::new(0.01 * (9.0 * t_s).sin(), 0.004 * (7.0 * t_s).cos(), 0.006 * (11.0 * t_s).sin());
@@ -24,7 +24,7 @@ const OPTIONS: Options = Options {
     },
 };
 
-/// The rows of 1500 samples, with the leader where `leader` has it.
+/// The rows of 1500 samples, with the leader's motion if `leader` is given.
 fn rows(mode: Mode, hole: Option<usize>, leader: Option<&dyn Fn(usize) -> Vector3<f64>>) -> (Vec<Row>, Figures) {
     let sample = |i: usize| sample(i, hole);
     let motion = Motion {
@@ -37,7 +37,7 @@ fn rows(mode: Mode, hole: Option<usize>, leader: Option<&dyn Fn(usize) -> Vector
     };
     let mut all = Vec::new();
     let figures = replay_motion(&motion, &Options { mode, ..OPTIONS }, |row, parcel| {
-        assert!((parcel.t_s - row.t_s).abs() < 1e-12, "the parcel of the same tick");
+        assert!((parcel.t_s - row.t_s).abs() < 1e-12, "the packet of the same tick");
         all.push(*row);
     });
     (all, figures.unwrap())

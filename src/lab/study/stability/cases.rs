@@ -10,7 +10,6 @@ pub(super) struct Raw {
     pub(super) force_n: f64,
 }
 
-/// One extreme case.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     pub(super) group: &'static str,
@@ -148,7 +147,7 @@ fn inputs() -> Vec<Case> {
     ]
 }
 
-/// All cases; `quick` leaves out those that take long in arbitrary precision (windows and rates above 1000).
+/// Returns all cases; `quick` leaves out those that are slow in arbitrary precision (windows and rates above 1000).
 pub(super) fn all(quick: bool) -> Vec<Case> {
     let mut cases = motions();
     for (name, amplitude) in [

@@ -1,4 +1,4 @@
-//! Long run: whether samples that have left the window leave a numerical error behind.
+//! Long run: whether samples that have left the window leave a numerical error.
 
 use nalgebra::{DMatrix, DVector};
 use nima_core::impedance::{MAX_DEGREE, Scales, Settings};
@@ -76,7 +76,6 @@ impl RunningSums {
     }
 }
 
-/// Runs at most `ticks` ticks.
 pub(super) fn run(ticks: u64) -> Drift {
     let ticks = ticks - (ticks - EARLY) % TABLE as u64;
     let scales = Scales::default();

@@ -10,7 +10,7 @@ use super::{
 use crate::{Experiment, Findings};
 
 impl Report {
-    /// CSV with one row per case, solver and degree; a figure that does not exist is empty.
+    /// Returns CSV with one row per case, solver and degree; a missing value is empty.
     pub fn csv(&self) -> String {
         let mut out = String::from(
             "group,name,rate_hz,window,solver,degree,asked,finite,error,unknowns,rank,deficient,condition,unit_difference\n",
@@ -79,7 +79,7 @@ impl Report {
         for RenderingVerdict { mode, finite_share, unit_difference, worst_case, long_run_difference, .. } in
             &verdict.renderings
         {
-            let long = long_run_difference.map_or_else(|| "too few to tell".into(), |late| format!("{late:.1e}"));
+            let long = long_run_difference.map_or_else(|| "too few to judge".into(), |late| format!("{late:.1e}"));
             writeln!(
                 out,
                 "{:<15} finite {:.1} %, m against mm {unit_difference:.1e} ({worst_case}), {} ticks against the last 500000 alone {long}",

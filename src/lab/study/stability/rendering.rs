@@ -1,4 +1,5 @@
-//! The modes that send parameters only, at the extremes: always finite, the same in every unit, and the same after a long time.
+//! The modes that send only parameters, in the extreme cases: always finite, the same in every unit, and the same after
+//! a long time.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Identifier, Mode, ModeSet, Sample, Settings, SettingsError};
@@ -6,7 +7,6 @@ use serde::Serialize;
 
 use super::{Case, scales, worse};
 
-/// The modes judged here.
 const MODES: [Mode; 2] = [Mode::Matched, Mode::Nima];
 /// Delay of the link (s).
 const DELAY_S: f64 = 0.05;
@@ -14,37 +14,36 @@ const DELAY_S: f64 = 0.05;
 /// One of these modes in one extreme case.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rendering {
-    /// The mode.
     pub mode: Mode,
     /// Ticks since its first force.
     pub asked: usize,
-    /// Of these, with a finite force in metres and in millimetres.
+    /// Ticks among these with a finite force in metres and in millimetres.
     pub finite: usize,
-    /// Largest difference between metres and millimetres, relative to the force or to its root mean square in the case,
+    /// Maximum difference between metres and millimetres, relative to the force or to its root mean square in the case,
     /// whichever is larger.
     pub unit_difference: Option<f64>,
 }
 
-/// One of these modes after a long run, beside one that started [`Endurance::FRESH`] ticks before its end, or a little earlier.
+/// One of these modes after a long run, compared with one that started about [`Endurance::FRESH`] ticks before its end.
 #[derive(Clone, Debug, Serialize)]
 pub struct Endurance {
-    /// The mode.
     pub mode: Mode,
-    /// Ticks run.
     pub ticks: u64,
     /// Ticks since the first force without a finite one.
     pub not_finite: u64,
-    /// Largest difference of force in the last 1000 ticks, relative to the root mean square; `None` if the run was too short
-    /// for a second one.
+    /// Maximum difference of force in the last 1000 ticks, relative to the root mean square; `None` if the run was too
+    /// short for a second one.
     pub difference: Option<f64>,
 }
 
 impl Endurance {
-    /// After so many ticks (500 s at 1 kHz; the longest memory has 20 s) only rounding can tell how long a run was.
+    /// After this many ticks (500 s at 1 kHz; the longest memory has 20 s) only rounding depends on the length of a
+    /// run.
     pub(super) const FRESH: u64 = 500_000;
     const COMPARED: u64 = 1000;
-    /// Runs that begin so many ticks apart, or a multiple, begin at the same place, which they keep as their origin, and renew their fits,
-    /// each every 7, 14 or 5 ticks, in the same ticks: only then must they be equal to the last digits.
+    /// Runs that begin this many ticks apart, or a multiple, begin at the same position, which they keep as their
+    /// origin, and renew their fits, each every 7, 14 or 5 ticks, in the same ticks: only then must they be equal to
+    /// the last digits.
     const ALIKE: u64 = 7 * Self::PERIOD;
     /// Ticks after which the motion repeats.
     const PERIOD: u64 = 10_000;
@@ -54,13 +53,12 @@ fn settings(unit: f64, mode: Mode) -> Settings {
     Settings { delay_s: DELAY_S, axes: 1, scales: scales(unit), modes: ModeSet::only(mode), ..Settings::default() }
 }
 
-/// A sample of one axis.
 pub(super) fn sample(t_s: f64, position_m: f64, force_n: f64) -> Sample {
     let [position_m, force_n] = [position_m, force_n].map(|value| Vector3::new(value, 0.0, 0.0));
     Sample { t_s, position_m, force_n }
 }
 
-/// What every mode renders at the horizon over the samples of a case.
+/// Returns the result of every mode at the horizon over the samples of a case.
 pub(super) fn extreme(case: &Case) -> Result<Vec<Rendering>, SettingsError> {
     MODES.into_iter().map(|mode| rendering(case, mode)).collect()
 }
@@ -93,7 +91,7 @@ fn rendering(case: &Case, mode: Mode) -> Result<Rendering, SettingsError> {
     Ok(rendering)
 }
 
-/// A hand that presses soft tissue again and again: position (m) and force (N) at a tick, the same after every period.
+/// A hand that presses soft tissue again and again: position (m) and force (N) at a tick, equal after every period.
 fn palpation(tick: u64) -> [f64; 2] {
     let t = (tick % Endurance::PERIOD) as f64 / Endurance::PERIOD as f64 * std::f64::consts::TAU;
     let x = 0.01 * ((7.0 * t).sin() + 0.4 * (19.0 * t + 1.0).sin() + 0.1 * (53.0 * t + 2.0).cos());
@@ -101,7 +99,7 @@ fn palpation(tick: u64) -> [f64; 2] {
     [x, if x > 0.0 { -300.0 * x - 4e3 * x * x - 8.0 * v } else { 0.0 }]
 }
 
-/// Runs every mode for so many ticks.
+/// Runs every mode for this many ticks.
 pub(super) fn endurance(ticks: u64) -> Result<Vec<Endurance>, SettingsError> {
     MODES.into_iter().map(|mode| long_run(ticks, mode)).collect()
 }

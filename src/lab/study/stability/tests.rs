@@ -6,7 +6,7 @@ fn ours_holds_at_the_extremes() {
     for extreme in &report.extremes {
         assert!(extreme.identifier_finite, "{}", extreme.name);
         for rendering in &extreme.renderings {
-            // The shortest case is over before the first parcel has come.
+            // The shortest case ends before the first packet has arrived.
             let too_short = extreme.window as f64 / extreme.rate_hz < 0.05;
             assert!(rendering.asked > 0 || too_short, "{}: {rendering:?}", extreme.name);
             assert_eq!(rendering.finite, rendering.asked, "{}: {rendering:?}", extreme.name);
@@ -35,5 +35,5 @@ fn a_long_run_answers_as_one_that_began_later() {
 #[test]
 fn too_few_ticks_are_refused() {
     let error = study(&Options { ticks: 9, quick: true }, |_, _, _| {}).unwrap_err();
-    assert_eq!(error.to_string(), "9 ticks were asked for; it must be 10000 to 1000000000");
+    assert_eq!(error.to_string(), "9 ticks are out of range; give 10000 to 1000000000");
 }

@@ -1,49 +1,48 @@
-//! Comparison of the figures with their targets.
+//! Comparison of the results with their targets.
 
 use nima_core::impedance::Mode;
 use serde::Serialize;
 
 use super::{Drift, Endurance, Entry, Extreme, ORDINARY_CONDITION, Solver, TARGET};
 
-/// The targets, and how often each solver fails.
+/// The targets, and the failures of each solver.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     /// Whether this project's solver and the mode *matched* reach all targets.
     pub reached: bool,
-    /// Share of its predictions that are finite.
+    /// Fraction of its predictions that are finite.
     pub ours_finite_share: f64,
     /// Whether the whole identifier stayed finite in every case.
     pub identifier_finite: bool,
-    /// Its worst relative error where the scaled condition is below 1e6.
+    /// Its worst relative error where the scaled condition number is below 1e6.
     pub ours_worst_error: f64,
     /// Its worst relative error in any case.
     pub ours_worst_error_anywhere: f64,
-    /// Its largest scaled condition.
+    /// Its largest scaled condition number.
     pub ours_worst_condition: f64,
-    /// Its worst difference between metres and millimetres where the scaled condition is below 1e6.
+    /// Its worst difference between metres and millimetres where the scaled condition number is below 1e6.
     pub ours_unit_difference: f64,
     /// The pseudo-inverse's worst difference between metres and millimetres.
     pub pseudo_inverse_unit_difference: f64,
-    /// The modes that send parameters only.
+    /// The modes that send only parameters.
     pub renderings: Vec<RenderingVerdict>,
-    /// How often each solver gives no prediction or a wrong one.
+    /// Number of missing and wrong predictions of each solver.
     pub failures: Vec<Failures>,
 }
 
-/// One of the modes that send parameters only.
+/// One of the modes that send only parameters.
 #[derive(Clone, Debug, Serialize)]
 pub struct RenderingVerdict {
-    /// The mode.
     pub mode: Mode,
     /// Whether it reaches the targets.
     pub reached: bool,
-    /// Share of its forces that are finite, in every case and in the long run.
+    /// Fraction of its forces that are finite, in every case and in the long run.
     pub finite_share: f64,
-    /// Its worst difference between metres and millimetres, and the case in which that is.
+    /// Its worst difference between metres and millimetres, and the case in which it occurs.
     pub unit_difference: f64,
-    /// See there.
+    /// See `unit_difference`.
     pub worst_case: String,
-    /// Its difference between a long run and a fresh one; `None` if the run was too short to tell.
+    /// Its difference between a long run and a fresh one; `None` if the run was too short.
     pub long_run_difference: Option<f64>,
 }
 
@@ -71,16 +70,14 @@ impl RenderingVerdict {
     }
 }
 
-/// Failures of one solver.
 #[derive(Clone, Debug, Serialize)]
 pub struct Failures {
-    /// The solver.
     pub solver: Solver,
-    /// Number of cases and degrees tried.
+    /// Number of cases and degrees tested.
     pub tried: usize,
-    /// Of these, with a prediction that is not finite.
+    /// Among these, cases with a prediction that is not finite.
     pub not_finite: usize,
-    /// Of these, all finite, but with an error above 1 % of the force.
+    /// Among these, cases that are finite but with an error above 1 % of the force.
     pub wrong: usize,
 }
 

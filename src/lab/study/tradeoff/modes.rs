@@ -70,7 +70,8 @@ pub(super) fn look(cancel: &AtomicBool) -> Result<(), SweepError> {
     if cancel.load(Ordering::Relaxed) { Err(SweepError::Cancelled) } else { Ok(()) }
 }
 
-/// An identifier that computes `mode` alone, as the loop does: its settings name every mode, so that any can be chosen while it runs.
+/// An identifier that computes only `mode`, as the loop does: its settings include every mode, so that any can be
+/// chosen while it runs.
 pub(super) fn identifier(settings: &Settings, mode: Mode) -> Result<Identifier, SettingsError> {
     let mut identifier = Identifier::new(&Settings { modes: settings.modes.with(mode), ..settings.clone() })?;
     identifier.compute(ModeSet::only(mode));

@@ -7,7 +7,8 @@ use super::{Knob, Method, Point, SourceFigures, Study};
 use crate::solvers::Solver;
 
 impl Study {
-    /// Pictures by name: error over cost for every source (under the source's name), then one for every parameter.
+    /// Returns the pictures by name: error over cost for every source (under the source's name), then one for every
+    /// parameter.
     pub fn pictures(&self) -> Vec<(String, String)> {
         let mut pictures: Vec<(String, String)> = Vec::new();
         for figures in &self.sources {
@@ -118,7 +119,7 @@ fn solver_curves(figures: &SourceFigures) -> impl Iterator<Item = (Solver, &[usi
     })
 }
 
-/// A figure of every solver over the length of the window.
+/// One value of every solver over the length of the window.
 fn solvers(figures: &SourceFigures, label: &'static str, figure: impl Fn(&Point) -> f64) -> Chart {
     let line = |(solver, points): (Solver, &[usize])| {
         let places = points.iter().map(|&i| &figures.points[i]);

@@ -1,4 +1,4 @@
-//! The parameters of the identification, and the values that are tried.
+//! The parameters of the identification, and their tested values.
 
 use nima_core::{
     impedance::{Identifier, MAX_DEGREE, Mode, Settings, SettingsError},
@@ -9,18 +9,17 @@ use serde::Serialize;
 use super::{modes, source::Source};
 use crate::solvers::Solver;
 
-/// What computes a force from samples.
+/// A method that computes a force from samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum Method {
-    /// A mode, as the loop runs it.
+    /// A mode, as run by the loop.
     Mode(Mode),
     /// The plain model of a window, computed by this solver (in its precision).
     Solver(Solver),
 }
 
 impl Method {
-    /// Name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mode(mode) => mode.name(),
@@ -28,7 +27,6 @@ impl Method {
         }
     }
 
-    /// The mode, if it is one.
     pub const fn mode(self) -> Option<Mode> {
         match self {
             Self::Mode(mode) => Some(mode),
@@ -40,7 +38,6 @@ impl Method {
 /// One value for every parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Choice {
-    /// Mode or solver.
     pub method: Method,
     pub degree: usize,
     pub window_ms: f64,
@@ -48,11 +45,11 @@ pub struct Choice {
     pub delay_ms: f64,
     /// Method for velocity and acceleration.
     pub differentiator: DifferentiatorKind,
-    /// Every how many samples of the source one is used.
+    /// Uses every n-th sample of the source.
     pub every: usize,
 }
 
-/// A parameter that is varied while the others are kept.
+/// A parameter that is varied while the others are constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Knob {
@@ -62,18 +59,15 @@ pub enum Knob {
     Window,
     /// Samples per second.
     Rate,
-    /// Delay of the link.
     Delay,
     /// Method for velocity and acceleration.
     Differentiator,
-    /// Mode of rendering.
     Mode,
     /// Degree and window together, at one delay.
     Grid,
 }
 
 impl Knob {
-    /// Name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Degree => "degree",
@@ -98,16 +92,16 @@ pub struct Curve {
     pub points: Vec<usize>,
 }
 
-/// The values to try.
+/// The values to test.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The base point, and settings that are not varied (scales, ridge). Rate and axes are those of the source.
+    /// The base point, and settings that are not varied (scales, ridge). Rate and axes come from the source.
     pub base: Settings,
-    /// Modes measured along every parameter that they have; the grid has all.
+    /// Modes measured along every parameter that they have; the grid has all modes.
     pub modes: Vec<Mode>,
     pub degrees: Vec<usize>,
     pub windows_s: Vec<f64>,
-    /// Rates below that of the source, Hz.
+    /// Rates below the source's, Hz.
     pub rates_hz: Vec<f64>,
     pub delays_s: Vec<f64>,
     pub differentiators: Vec<DifferentiatorKind>,
@@ -115,7 +109,7 @@ pub struct Plan {
     pub solvers: Vec<Solver>,
     /// Number of instants at which each solver is evaluated.
     pub instants: usize,
-    /// Passes over the source for each point of a mode; the lowest time counts as its cost.
+    /// Passes over the source for each point of a mode; the minimum time counts as its cost.
     pub passes: usize,
 }
 
@@ -149,7 +143,7 @@ impl Plan {
         }
     }
 
-    /// The base point for `source` with this mode.
+    /// Returns the base point for `source` with this mode.
     pub fn base_choice(&self, source: &Source, mode: Mode) -> Choice {
         Choice {
             method: Method::Mode(mode),
@@ -175,7 +169,7 @@ impl Plan {
             }
             if mode.has_window() {
                 layout.curve(Knob::Window, base.method, self.of_windows(base).collect());
-                // Velocity and acceleration are columns of these modes only.
+                // Only these modes have velocity and acceleration as columns.
                 let differentiators = self.differentiators.iter();
                 let choices = differentiators.map(|&differentiator| Choice { differentiator, ..base });
                 layout.curve(Knob::Differentiator, base.method, choices.collect());
@@ -201,7 +195,7 @@ impl Plan {
         self.windows_s.iter().map(move |&s| Choice { window_ms: ms(s), ..base })
     }
 
-    /// Every mode with every degree and every window that it can have.
+    /// Every mode with all of its degrees and windows.
     fn lay_out_grid(&self, source: &Source, delay_ms: f64, layout: &mut Layout) {
         for mode in Mode::ALL {
             let base = Choice { delay_ms, ..self.base_choice(source, mode) };
@@ -236,7 +230,8 @@ impl Plan {
         choices
     }
 
-    /// The identifier that is measured for `choice` on a source with this number of axes; `None` for a solver, which has none.
+    /// Returns the identifier for `choice` on a source with this number of axes; `None` for a solver, which does not
+    /// use one.
     ///
     /// # Errors
     /// [`SettingsError`] if the choice is out of range.

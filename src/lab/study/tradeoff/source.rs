@@ -8,18 +8,17 @@ use nima_machine::{
 use nima_recording::csv::Recording;
 use nima_simulation::{World, scene::Scene};
 
-/// Motion and force over time, and what to call them.
+/// Motion and force over time, with a name.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Name in tables and pictures.
     pub name: String,
     pub unit: String,
     pub recording: Recording,
 }
 
 impl Source {
-    /// Records `scene` open-loop on the perfect virtual clock: the follower follows the hand, the hand feels nothing, so that
-    /// every choice of parameters is given identical motion and force. The scene must have been validated.
+    /// Records `scene` open-loop on the perfect virtual clock: the follower follows the hand, the hand feels nothing,
+    /// so that every choice of parameters gets identical motion and force. The scene must have been validated.
     pub fn from_scene(scene: &Scene, rate_hz: f64, seconds: f64) -> Self {
         Self::on_clock(VirtualClock::PERFECT, scene, rate_hz, seconds)
     }
@@ -60,7 +59,7 @@ impl Source {
         Self { name, unit: unit.to_owned(), recording }
     }
 
-    /// Length, s.
+    /// Duration, s.
     pub fn seconds(&self) -> f64 {
         match &*self.recording.samples {
             [first, .., last] => last.t_s - first.t_s,

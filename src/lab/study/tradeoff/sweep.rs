@@ -15,7 +15,7 @@ use super::{
     windows,
 };
 
-/// Longest window or delay as a share of the source; longer ones leave too few samples to judge.
+/// Maximum window or delay as a fraction of the source; longer ones leave too few samples to judge.
 const LONGEST_SHARE: f64 = 0.25;
 
 /// Why a sweep failed.
@@ -23,8 +23,7 @@ const LONGEST_SHARE: f64 = 0.25;
 pub enum SweepError {
     #[error("cancelled; nothing was saved")]
     Cancelled,
-    /// Nothing could be measured on a source.
-    #[error("{name}: no point of the plan can be measured on it ({reason}); record longer, or at a higher rate")]
+    #[error("{name}: no point of the plan can be measured on it: {reason}; record longer, or at a higher rate")]
     Nothing {
         name: String,
         /// Why its first point was left out.
@@ -43,10 +42,9 @@ pub struct CostUs {
 }
 
 impl CostUs {
-    /// Worse than any measurement.
     pub(super) const WORST: Self = Self { p50: f64::INFINITY, p99: f64::INFINITY };
 
-    /// The lower of both: disturbances by other programs only ever add time.
+    /// Returns the lower of both: disturbances by other programs only ever add time.
     pub(super) fn quieter(self, other: &Quantiles) -> Self {
         Self { p50: self.p50.min(other.p50), p99: self.p99.min(other.p99) }
     }
@@ -57,11 +55,11 @@ impl CostUs {
 pub struct Point {
     #[serde(flatten)]
     pub choice: Choice,
-    /// Time of one tick, us; the lowest of the passes.
+    /// Time of one tick, us; the minimum of the passes.
     pub cost_us: CostUs,
-    /// Share of one processor used by the median tick at this rate.
+    /// Fraction of one processor used by the median tick at this rate.
     pub load: f64,
-    /// Mean error at the horizon, in the unit of the source.
+    /// Mean prediction error at the horizon, in the unit of the source.
     pub error: f64,
     pub error_p50: f64,
     pub error_p95: f64,
@@ -69,7 +67,7 @@ pub struct Point {
     pub dfr_error: f64,
     /// `error / dfr_error`; NaN if DFR's error is zero.
     pub ratio: f64,
-    /// Share of samples without a rendered force (their error is the whole force).
+    /// Fraction of samples without a rendered force (their error is the whole force).
     pub not_rendered: f64,
     /// Samples judged and timed.
     pub judged: usize,
@@ -86,7 +84,6 @@ pub struct Skipped {
     pub reason: String,
 }
 
-/// Results of one source.
 #[derive(Clone, Debug, Serialize)]
 pub struct SourceFigures {
     pub source: String,
@@ -97,15 +94,12 @@ pub struct SourceFigures {
     /// Only samples later than this and the delay are judged, s, so that the longest window is full.
     pub judged_from_s: f64,
     pub points: Vec<Point>,
-    /// Points along each parameter.
     pub curves: Vec<Curve>,
     pub skipped: Vec<Skipped>,
 }
 
-/// All results; the JSON of `nima study tradeoff`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Study {
-    /// One per source.
     pub sources: Vec<SourceFigures>,
 }
 
@@ -184,8 +178,8 @@ fn measure_source(
     })
 }
 
-/// The longest window that is measured. Judging starts only when it is full, so that all points are judged on the same
-/// samples.
+/// Returns the longest window that is measured. Judging starts only when it is full, so that all points are judged on
+/// the same samples.
 fn longest_usable(choices: &[Choice], longest_s: f64) -> f64 {
     choices.iter().map(|choice| choice.window_ms * 1e-3).filter(|&s| s <= longest_s).fold(0.0, f64::max)
 }
@@ -238,7 +232,7 @@ fn point(choice: &Choice, measured: &Measured) -> Point {
     }
 }
 
-/// Marks the grid points that no other grid point at the same delay beats in both cost (median) and error.
+/// Marks the grid points that are not beaten in both cost (median) and error by another grid point at the same delay.
 pub(super) fn mark_front(points: &mut [Point], on_grid: &[usize]) {
     let grid: Vec<Point> = on_grid.iter().map(|&index| points[index]).collect();
     for &index in on_grid {

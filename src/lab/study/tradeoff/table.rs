@@ -1,4 +1,4 @@
-//! The figures as CSV, one row per point.
+//! The results as CSV, one row per point.
 
 use std::fmt::Write as _;
 

@@ -15,7 +15,7 @@ use crate::{
     solvers::Solver,
 };
 
-/// A hand that presses on a soft spring twice a second.
+/// A hand that presses a soft spring twice per second.
 fn source(seconds: f64, rate_hz: f64) -> Source {
     let samples = (0..(seconds * rate_hz) as usize)
         .map(|k| {

@@ -1,10 +1,10 @@
-//! Cost and error of the plain model `f = M X` in a window, for each of the solvers that could find `M`.
+//! Cost and error of the plain model `f = M X` in a window, for each of the solvers that can compute `M`.
 //!
-//! For time t every solver is given the window that ends at t - D, fits all degrees up to the chosen one, and predicts
-//! the force from the motion at t; the prediction is not anchored, blended or bounded. A new solution of a whole window
-//! is slow, so it is computed at a number of instants spread over the source, the same for all solvers; the sliding
-//! solver processes every sample. Solvers that work per axis are timed for all axes together; the sliding one computes
-//! up to three axes in the lanes of one factor, so one axis is timed.
+//! For time t every solver gets the window that ends at t - D, fits all degrees up to the chosen one, and predicts the
+//! force from the motion at t; the prediction is not anchored, blended or bounded. Solving a whole window is slow, so
+//! it is done at a number of instants spread over the source, the same for all solvers; the sliding solver processes
+//! every sample. Solvers that work per axis are timed for all axes together; the sliding one computes up to three axes
+//! in the lanes of one factor, so one axis is timed.
 
 use std::{hint::black_box, sync::atomic::AtomicBool, time::Instant};
 

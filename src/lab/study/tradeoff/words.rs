@@ -1,4 +1,4 @@
-//! The figures as text for a terminal.
+//! The results as text for a terminal.
 
 use std::fmt::Write as _;
 

@@ -12,10 +12,9 @@ use nima_analysis::{
 
 use super::{Design, Mixed, OfCondition, OfMeasure, Pair, table::Table};
 
-/// Most participants that a power is looked for with.
+/// Maximum number of participants considered when searching for a power.
 const NEEDED_MAX: usize = 500;
 
-/// The means of each participant under each condition.
 type Means<'a> = BTreeMap<(&'a str, &'a str), (f64, usize)>;
 
 pub(super) fn measure(
@@ -50,7 +49,7 @@ pub(super) fn measure(
     })
 }
 
-/// The value, or a note that says why there is none.
+/// Returns the value, or adds a note that says why there is none.
 fn or_note<T>(value: Result<T, AnalysisError>, what: &str, notes: &mut Vec<String>) -> Option<T> {
     value.map_err(|error| notes.push(format!("{what}: {error}"))).ok()
 }
@@ -58,7 +57,7 @@ fn or_note<T>(value: Result<T, AnalysisError>, what: &str, notes: &mut Vec<Strin
 fn design(means: &Means<'_>, conditions: &[&str]) -> Design {
     let mut participants: Vec<&str> = means.keys().map(|(participant, _)| *participant).collect();
     let all = participants.len();
-    // In the order of the keys, those of a participant stand together.
+    // The keys are sorted, so the entries of a participant are adjacent.
     participants.dedup();
     match conditions.len() {
         0 | 1 => Design::Single,
@@ -67,7 +66,7 @@ fn design(means: &Means<'_>, conditions: &[&str]) -> Design {
     }
 }
 
-/// The participants who were under every condition, a row for each.
+/// Returns the participants with data under every condition, one row each.
 fn complete(means: &Means<'_>, conditions: &[&str]) -> Vec<Vec<f64>> {
     let mut participants: Vec<&str> = means.keys().map(|(participant, _)| *participant).collect();
     participants.dedup();
@@ -85,12 +84,12 @@ fn of_condition(means: &Means<'_>, condition: &str, confidence: f64) -> Result<O
     let Summary { n, mean, sd, median, .. } = Summary::of(&values)?;
     let trials = means.iter().filter(|((_, of), _)| *of == condition).map(|(_, (_, count))| count).sum();
     let bootstrap = Bootstrap { confidence, ..Bootstrap::default() };
-    // Too few values, or all the same, have no interval.
+    // Too few values, or all equal ones, have no interval.
     let interval = bootstrap.median(&values).ok();
     Ok(OfCondition { condition: condition.to_owned(), participants: n, trials, median, interval, mean, sd })
 }
 
-/// Every pair of conditions; the reference is the second of its pairs.
+/// Compares every pair of conditions; the reference is the second of its pairs.
 fn pairs(
     means: &Means<'_>,
     conditions: &[&str],
@@ -122,7 +121,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// Differences that are equal but for rounding are ties.
+/// Differences that are equal except for rounding are ties.
 fn rounded(differences: Vec<f64>) -> Vec<f64> {
     let largest = differences.iter().fold(0.0, |most: f64, difference| most.max(difference.abs()));
     if largest <= 0.0 {
@@ -183,7 +182,7 @@ fn between(means: &Means<'_>, first: &str, second: &str, confidence: f64) -> Res
     })
 }
 
-/// All trials: where participants have several, or were under several conditions.
+/// Analyses all trials, if participants have several or were under several conditions.
 fn mixed(
     table: &Table,
     place: usize,

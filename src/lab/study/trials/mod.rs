@@ -1,9 +1,10 @@
-//! Which condition is better, from a table of trials: participants, conditions, and any number of measures.
+//! Compares conditions in a table of trials: participants, conditions, and any number of measures.
 //!
-//! Each measure is compared on its own. Where every participant was under several conditions: Wilcoxon's signed-rank test of each pair with the
-//! Hodges-Lehmann difference, Friedman's test of all of them; where the groups are different people: Mann and Whitney's. In both cases the
-//! pairs' p-values are corrected after Holm, and a mixed model with a random intercept per participant uses every trial. The statistics are those
-//! of `nima_analysis`, which are checked against R and `SciPy`.
+//! Each measure is compared separately. If every participant was under several conditions: Wilcoxon's signed-rank test
+//! of each pair with the Hodges-Lehmann difference, and Friedman's test of all of them; if the groups are different
+//! people: the Mann-Whitney test. In both cases the pairs' p-values are corrected after Holm, and a mixed model with a
+//! random intercept per participant uses every trial. The statistics are those of `nima_analysis`, which are checked
+//! against R and `SciPy`.
 
 mod compare;
 mod present;
@@ -20,43 +21,37 @@ pub use table::{Table, TableError, Trial};
 
 use crate::Experiment;
 
-/// The analysis of a table.
 #[derive(Clone, Debug)]
 pub struct Trials {
-    /// The table (CSV): a row per trial, with `participant`, `condition`, and a column per measure.
+    /// The table (CSV): one row per trial, with `participant`, `condition`, and a column per measure.
     pub path: PathBuf,
-    /// The measures; empty for every column of numbers.
+    /// The measures; empty for every numeric column.
     pub measures: Vec<String>,
-    /// The condition with which others are compared; the first in alphabetical order if none is named.
+    /// The condition with which the others are compared; by default the first in alphabetical order.
     pub reference: Option<String>,
-    /// Confidence of the intervals, as a share.
+    /// Confidence level of the intervals, 0 to 1.
     pub confidence: f64,
-    /// Tell for how many participants this power is reached.
+    /// Reports the number of participants for which this power is reached.
     pub power: Option<f64>,
 }
 
-/// Why a table cannot be analysed.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialsError {
-    /// The table.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// No such condition.
-    #[error("{path}: there is no condition \"{name}\"; there are: {known}")]
+    #[error("{path}: there is no condition \"{name}\"; choose one of {known}")]
     Reference {
-        /// The table.
         path: String,
-        /// What was named.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The existing conditions.
         known: String,
     },
-    /// A setting.
     #[error(transparent)]
     Setting(AnalysisError),
 }
 
-/// How the conditions are spread over the participants.
+/// Assignment of conditions to participants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Design {
@@ -64,60 +59,52 @@ pub enum Design {
     Within,
     /// Each participant was under one condition.
     Between,
-    /// There is one condition.
     Single,
 }
 
-/// The result.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The table.
     pub table: String,
-    /// Trials in it.
     pub trials: usize,
-    /// Participants in it.
     pub participants: usize,
-    /// The conditions, in alphabetical order.
+    /// In alphabetical order.
     pub conditions: Vec<String>,
-    /// The one with which others are compared.
+    /// The condition with which the others are compared.
     pub reference: String,
-    /// Confidence of the intervals.
+    /// Confidence level of the intervals.
     pub confidence: f64,
-    /// Every measure.
     pub measures: Vec<OfMeasure>,
 }
 
-/// One measure.
 #[derive(Clone, Debug, Serialize)]
 pub struct OfMeasure {
-    /// Name of its column.
     pub measure: String,
     /// Trials without a value.
     pub missing: usize,
-    /// How the conditions are spread over the participants.
+    /// Assignment of conditions to participants.
     pub design: Design,
-    /// What was measured under each condition.
+    /// Measurements under each condition.
     pub conditions: Vec<OfCondition>,
-    /// All conditions at once, of the participants who were under all of them; where there are three or more.
+    /// All conditions at once, for the participants who were under all of them; if there are three or more.
     pub friedman: Option<Friedman>,
-    /// How many participants that are.
+    /// Number of these participants.
     pub complete: usize,
     /// Every pair of conditions.
     pub pairs: Vec<Pair>,
     /// All trials: differences from the reference.
     pub mixed: Option<Mixed>,
-    /// What could not be computed, and why.
+    /// Values that could not be computed, with the reason.
     pub notes: Vec<String>,
 }
 
-/// A measure under one condition; of a participant with several trials their mean.
+/// A measure under one condition; for a participant with several trials, their mean.
 #[derive(Clone, Debug, Serialize)]
 pub struct OfCondition {
     pub condition: String,
     pub participants: usize,
     pub trials: usize,
     pub median: f64,
-    /// Of the median, by bootstrap (`BCa`).
+    /// Interval of the median, by bootstrap (`BCa`).
     pub interval: Option<Interval>,
     pub mean: f64,
     pub sd: Option<f64>,
@@ -126,9 +113,8 @@ pub struct OfCondition {
 /// Two conditions, the first minus the second.
 #[derive(Clone, Debug, Serialize)]
 pub struct Pair {
-    /// The first.
     pub first: String,
-    /// The second; the reference, where it is one of the two.
+    /// The reference, if it is one of the two.
     pub second: String,
     /// Participants under both, or in each group.
     pub participants: [usize; 2],
@@ -136,7 +122,7 @@ pub struct Pair {
     pub difference: Location,
     /// Two-sided p of the rank test.
     pub p: f64,
-    /// Whether it is exact.
+    /// Whether `p` is exact.
     pub exact: bool,
     /// The same after Holm, over the pairs of the measure.
     pub p_holm: f64,
@@ -144,18 +130,18 @@ pub struct Pair {
     pub rank_effect: f64,
     /// Hedges' g: of the differences, or of the groups.
     pub g: Option<f64>,
-    /// Participants that are needed for the wanted power, if the difference is as measured.
+    /// Number of participants for the requested power, if the true difference equals the measured one.
     pub needed: Option<usize>,
 }
 
 /// The mixed model: response ~ condition + trial + (1 | participant), REML.
 #[derive(Clone, Debug, Serialize)]
 pub struct Mixed {
-    /// Differences from the reference, and the effect of the trial's number where the table has it.
+    /// Differences from the reference, and the effect of the trial's number if the table has it.
     pub effects: Vec<mixed::Effect>,
     /// Whether the conditions differ at all.
     pub conditions: Option<mixed::JointTest>,
-    /// Share of the participants in the variance.
+    /// Fraction of the variance between participants.
     pub icc: f64,
 }
 

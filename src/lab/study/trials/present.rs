@@ -1,4 +1,4 @@
-//! The result in words, as a table, and as a script that repeats it in R.
+//! The result as text, as a table, and as a script that repeats it in R.
 
 use std::fmt::Write as _;
 
@@ -27,7 +27,7 @@ impl Findings for Report {
     }
 }
 
-/// A p-value as papers print it.
+/// A p-value in the usual notation of papers.
 fn p_words(p: f64) -> String {
     if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") }
 }
@@ -160,7 +160,7 @@ impl Pair {
 }
 
 impl Report {
-    /// A row per measure and pair.
+    /// One row per measure and pair.
     fn csv(&self) -> String {
         let mut text = "measure,first,second,participants_first,participants_second,difference,lower,upper,p,exact,p_holm,rank_effect,hedges_g\n".to_owned();
         for measure in &self.measures {
@@ -191,7 +191,7 @@ impl Report {
         text
     }
 
-    /// The same in R, to check it.
+    /// The same in R, for verification.
     fn script(&self) -> String {
         let quoted = |word: &str| format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""));
         let measures: Vec<String> = self.measures.iter().map(|measure| quoted(&measure.measure)).collect();

@@ -8,16 +8,15 @@ use std::{
 
 use nima_files::{open_table, quoted};
 
-/// Columns that are no measures.
+/// Columns that are not measures.
 const NO_MEASURES: [&str; 3] = [PARTICIPANT, CONDITION, TRIAL];
 const PARTICIPANT: &str = "participant";
 const CONDITION: &str = "condition";
 const TRIAL: &str = "trial";
-/// Most trials and most columns.
+/// Maximum number of trials and of columns.
 const TRIALS_MAX: usize = 100_000;
 const COLUMNS_MAX: usize = 1000;
 
-/// Why a table of trials cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("{path}: {why}")]
 pub struct TableError {
@@ -25,34 +24,29 @@ pub struct TableError {
     why: String,
 }
 
-/// One trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// Name of the participant.
     pub participant: String,
-    /// Name of the condition.
     pub condition: String,
     /// Its number, if the table has it.
     pub number: Option<f64>,
-    /// The measures, in the order of the table's; `None` where it has no value.
+    /// The measures, in the order of the table's; `None` for a missing value.
     pub values: Vec<Option<f64>>,
 }
 
-/// A table of trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Names of the measures.
     pub measures: Vec<String>,
-    /// The trials, in the order of the file.
+    /// In the order of the file.
     pub trials: Vec<Trial>,
 }
 
 impl Table {
-    /// Reads a CSV file with the columns `participant`, `condition`, if it likes `trial` (a number), and a column per measure: these ones, or
-    /// every other column that holds numbers alone. Empty cells and `NA` are missing values.
+    /// Reads a CSV file with the columns `participant`, `condition`, optionally `trial` (a number), and a column per
+    /// measure: the wanted ones, or every other numeric column. Empty cells and `NA` are missing values.
     ///
     /// # Errors
-    /// [`TableError`]: what is wrong, where, and what to do.
+    /// [`TableError`] with cause, position and remedy.
     pub fn read(path: &Path, wanted: &[String]) -> Result<Self, TableError> {
         let failed = |why: String| TableError { path: path.display().to_string(), why };
         let input = open_table(path).map_err(|error| failed(error.to_string()))?;
@@ -66,7 +60,7 @@ impl Table {
             return Err(format!("{} columns are more than {COLUMNS_MAX}", names.len()));
         }
         if let Some(twice) = names.iter().enumerate().find(|(at, name)| names[..*at].contains(name)) {
-            return Err(format!("column \"{}\" is there twice", quoted(twice.1)));
+            return Err(format!("column \"{}\" occurs twice", quoted(twice.1)));
         }
         let column = |name: &str| names.iter().position(|known| known == name);
         let needed = |name: &str| column(name).ok_or_else(|| format!("there is no column \"{name}\""));
@@ -95,7 +89,7 @@ impl Table {
         }
         let cell = |line: u64, row: &csv::StringRecord, at: usize| {
             value(&row[at])
-                .map_err(|text| format!("line {line}: \"{}\" in column {} is no number", quoted(&text), names[at]))
+                .map_err(|text| format!("line {line}: \"{}\" in column {} is not a number", quoted(&text), names[at]))
         };
         let word = |line: u64, row: &csv::StringRecord, at: usize| match &row[at] {
             "" => Err(format!("line {line}: {} is empty", names[at])),
@@ -116,23 +110,22 @@ impl Table {
         Ok(Self { measures: measures.into_iter().map(|at| names[at].clone()).collect(), trials })
     }
 
-    /// The conditions, in alphabetical order.
+    /// In alphabetical order.
     pub fn conditions(&self) -> Vec<String> {
         let all: BTreeSet<&String> = self.trials.iter().map(|trial| &trial.condition).collect();
         all.into_iter().cloned().collect()
     }
 
-    /// How many participants there are.
     pub fn participants(&self) -> usize {
         self.trials.iter().map(|trial| &trial.participant).collect::<BTreeSet<_>>().len()
     }
 
-    /// The trials that have a value of this measure, with it.
+    /// Returns the trials that have a value of this measure, with the value.
     pub(super) fn measured(&self, measure: usize) -> impl Iterator<Item = (&Trial, f64)> {
         self.trials.iter().filter_map(move |trial| Some((trial, trial.values.get(measure).copied()??)))
     }
 
-    /// The mean of each participant under each condition, and the number of its trials.
+    /// Returns the mean of each participant under each condition, and the number of its trials.
     pub(super) fn means(&self, measure: usize) -> BTreeMap<(&str, &str), (f64, usize)> {
         let mut sums: BTreeMap<(&str, &str), (f64, usize)> = BTreeMap::new();
         for (trial, value) in self.measured(measure) {
@@ -146,7 +139,7 @@ impl Table {
     }
 }
 
-/// A cell: a finite number, or nothing.
+/// Parses a cell: a finite number, or nothing.
 fn value(cell: &str) -> Result<Option<f64>, String> {
     if cell.is_empty() || cell == "NA" {
         return Ok(None);
@@ -157,14 +150,14 @@ fn value(cell: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// An error of the reader in few words.
+/// A short text for an error of the reader.
 fn plain(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
             let line = pos.as_ref().map_or(0, csv::Position::line);
             format!("line {line} has {len} values where the first line has {expected_len} names")
         }
-        csv::ErrorKind::Utf8 { .. } => "it is no text (UTF-8)".to_owned(),
+        csv::ErrorKind::Utf8 { .. } => "it is not text (UTF-8)".to_owned(),
         _ => error.to_string(),
     }
 }
@@ -199,7 +192,7 @@ mod tests {
             ("participant,condition,t\na,x,inf\n", &["t"], "line 2"),
             ("participant,condition,t\na,,1\n", &[], "line 2: condition is empty"),
             ("participant,condition,t\na,x\n", &[], "line 2 has 2 values"),
-            ("participant,condition,t,t\na,x,1,2\n", &[], "\"t\" is there twice"),
+            ("participant,condition,t,t\na,x,1,2\n", &[], "\"t\" occurs twice"),
             ("participant,condition,t\n", &[], "no trials"),
             ("participant,condition,t\na,x,1\n", &["u"], "no column \"u\""),
         ] {

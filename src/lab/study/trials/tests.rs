@@ -67,7 +67,7 @@ fn groups_of_different_people_are_compared_as_groups() {
     let measure = &report.measures[0];
     assert_eq!((measure.design, measure.friedman.is_none(), measure.mixed.is_none()), (Design::Between, true, true));
     let pair = &measure.pairs[0];
-    // 8 of 8 apart: 2 of the 70 ways.
+    // 8 of 8 apart: 2 of the 70 permutations.
     assert!((pair.p - 2.0 / 70.0).abs() < 1e-9 && (pair.rank_effect - 1.0).abs() < 1e-12, "{pair:?}");
     assert_eq!((pair.first.as_str(), pair.second.as_str()), ("old", "new"));
 }

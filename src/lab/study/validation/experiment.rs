@@ -1,5 +1,5 @@
-//! The paper's experiments on the simulated rig, sample by sample, together with the true force, which only a
-//! simulation knows.
+//! The paper's experiments on the simulated rig, sample by sample, together with the true force, which is known only in
+//! a simulation.
 
 use nalgebra::{UnitVector3, Vector3};
 use nima_core::{
@@ -14,30 +14,28 @@ use nima_simulation::{World, scene::Scene};
 
 use super::ValidationError;
 
-/// Rate of the rig, Hz.
 pub const RATE_HZ: f64 = 1000.0;
 /// Time limit of a guided calibration, s.
 const PATIENCE_S: f64 = 120.0;
 
-/// A simulated rig and its time.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     world: World,
     ticks: u64,
 }
 
-/// The compensation of gravity as the loop runs it, for the rate of the rig.
+/// Compensates gravity as the loop does, at the rate of the rig.
 pub fn compensator(gravity: &GravityModel) -> Compensator {
     Compensator::new(*gravity, DEFAULT_TIME_CONSTANT_S, 1.0 / RATE_HZ)
 }
 
 impl Experiment {
-    /// For a scene with a person and a wrist sensor; other scenes give no samples.
+    /// Makes the rig for a scene with a person and a wrist sensor; other scenes give no samples.
     pub fn new(scene: &Scene) -> Self {
         Self { world: World::new(scene, RATE_HZ), ticks: 0 }
     }
 
-    /// The embedded scene of this name with another seed.
+    /// Returns the embedded scene of this name with another seed.
     ///
     /// # Errors
     /// [`ValidationError`] if there is no such scene.
@@ -45,12 +43,11 @@ impl Experiment {
         Ok(Scene { seed, ..Scene::load(name)? })
     }
 
-    /// Present time, s.
     pub fn t_s(&self) -> f64 {
         self.ticks as f64 / RATE_HZ
     }
 
-    /// The next sample while the person follows this instruction.
+    /// Returns the next sample while the person follows this instruction.
     pub fn sample(&mut self, prompt: Prompt) -> Option<WristSample> {
         self.ticks += 1;
         let outputs = Outputs { prompt, ..Outputs::SAFE };
@@ -63,7 +60,7 @@ impl Experiment {
     }
 }
 
-/// Calibrates gravity in its own scene, as the wizard does.
+/// Calibrates gravity in its own scene, like the wizard.
 ///
 /// # Errors
 /// [`ValidationError`] if the scene is invalid or the calibration fails.
@@ -73,7 +70,7 @@ pub fn gravity(seed: u64) -> Result<GravityModel, ValidationError> {
     Ok(fit.model)
 }
 
-/// The same, with the figures that show how good the calibration is.
+/// Like [`gravity`], with the measures of the calibration's quality.
 ///
 /// # Errors
 /// As [`gravity`].
@@ -102,7 +99,7 @@ pub struct Pushes {
     pub unseen_s1_n: Vec<[Vector3<f64>; 2]>,
 }
 
-/// Guided pushes on the tissue without a trocar, and pushes for `seconds` more to judge the fit.
+/// Guides pushes on the tissue without a trocar, then records pushes for `seconds` more to judge the fit.
 ///
 /// # Errors
 /// [`ValidationError`] if the scene is invalid or the calibration fails.
@@ -132,7 +129,7 @@ pub fn correspondence(gravity: &GravityModel, seed: u64, seconds: f64) -> Result
     Ok(Pushes { report, unseen_s1_n })
 }
 
-/// The correspondence of a report, for further use.
+/// Returns the correspondence of a report.
 ///
 /// # Errors
 /// [`ValidationError`] if the report has no rotation.
@@ -147,7 +144,7 @@ fn push(asked: Option<correspondence::PushTarget>, pushes: usize) -> Prompt {
     Prompt::Push { direction: UnitVector3::new_normalize(target.push_in_world) }
 }
 
-/// The next sample and its wrench without weight and bias.
+/// Returns the next sample and its wrench without weight and bias.
 pub fn felt(experiment: &mut Experiment, gravity: &mut Compensator, prompt: Prompt) -> Option<(WristSample, Wrench)> {
     let sample = experiment.sample(prompt)?;
     Some((sample, gravity.step(&sample)?))

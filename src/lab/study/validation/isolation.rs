@@ -20,13 +20,12 @@ use crate::validation::experiment::{Experiment, felt};
 /// A recorded session: the data set as a technician records it, and the true force of every row.
 #[derive(Clone, Debug)]
 pub struct Session {
-    /// The data set, CSV.
+    /// CSV.
     pub text: Vec<u8>,
     /// True force at the tip, row by row, N (`s1`).
     pub truth_n: Vec<Vector3<f64>>,
 }
 
-/// Calibrations made before a session.
 #[derive(Clone, Copy, Debug)]
 pub struct Known {
     /// Weight of the tool and bias of the sensor.
@@ -47,7 +46,7 @@ impl Known {
     }
 }
 
-/// Records `rows` rows of a scene. Of every ten seconds `contact_s` are spent in contact, the remaining time above the
+/// Records `rows` rows of a scene. In every ten seconds, `contact_s` are in contact, the remaining time above the
 /// tissue.
 ///
 /// # Errors
@@ -66,7 +65,7 @@ pub fn record(
     while recorder.rows() < rows {
         let t_s = experiment.t_s();
         let prompt = match t_s {
-            // For the first second nothing is touched: the sensor under the tissue is zeroed.
+            // No contact in the first second, while the sensor under the tissue is zeroed.
             t if t < 1.0 => Prompt::Rest,
             t if t % 10.0 < contact_s => Prompt::Work,
             _ => Prompt::WorkFree,
@@ -88,7 +87,7 @@ pub fn record(
 }
 
 impl Session {
-    /// The data set with these inputs; `None` for the default inputs.
+    /// Returns the data set with these inputs; `None` for the default inputs.
     ///
     /// # Errors
     /// [`ValidationError`] if the data set lacks a column.
@@ -98,7 +97,7 @@ impl Session {
         Ok(DataSet::parse(&texts, &Selection { inputs, outputs: None })?)
     }
 
-    /// The same with the true force at the tip in place of the measurement under the tissue.
+    /// The same with the true force at the tip instead of the measurement under the tissue.
     ///
     /// # Errors
     /// [`ValidationError`] if the data set lacks a column.
@@ -116,19 +115,19 @@ pub const PAPER_INPUTS: [&str; 7] = ["fx_n", "fy_n", "fz_n", "qw", "qx", "qy", "
 pub const ROWS: usize = 30_000;
 /// Rows of a session used for judging.
 const JUDGED_ROWS: usize = 10_000;
-/// Seconds of every ten that are spent in contact.
+/// Seconds of every ten in contact.
 const CONTACT_S: f64 = 7.0;
 
 /// Errors of a network on sessions that it was not trained on.
 #[derive(Clone, Debug, Serialize)]
 pub struct Reached {
-    /// Against the sensor under the tissue, as in the paper.
+    /// Compared with the sensor under the tissue, as in the paper.
     pub measured: Part,
-    /// Against the true force, which only a simulation knows.
+    /// Compared with the true force, which is known only in a simulation.
     pub truth: Part,
-    /// Without contact: mean and spread of the predictions.
+    /// Mean and spread of the predictions without contact.
     pub no_contact: Vec<NoContact>,
-    /// Share of samples of these sessions that the network flags as uncertain.
+    /// Fraction of samples of these sessions that the network flags as uncertain.
     pub false_alarms: f64,
     /// Wall-clock time of the training, s.
     pub training_s: f64,
@@ -136,14 +135,14 @@ pub struct Reached {
     pub inference_us: Quantiles,
 }
 
-/// Samples outside the range of the training data on purpose, and the share that is flagged.
+/// Samples deliberately outside the range of the training data, and the fraction that is flagged.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Foreign {
-    /// In what they differ from the training data.
+    /// How they differ from the training data.
     pub what: &'static str,
     /// Number of samples.
     pub rows: usize,
-    /// Share of them that is flagged as uncertain.
+    /// Fraction of them that is flagged as uncertain.
     pub flagged: f64,
 }
 
@@ -154,11 +153,10 @@ pub struct Isolation {
     pub paper_inputs: Reached,
     /// With the default inputs of this project.
     pub our_inputs: Reached,
-    /// How often samples outside the training data are flagged.
+    /// Flagged fractions of samples outside the training data.
     pub foreign: Vec<Foreign>,
 }
 
-/// One training session, and the sessions for judging.
 #[derive(Clone, Debug)]
 pub struct Sessions {
     known: Known,
@@ -220,7 +218,7 @@ impl Sessions {
         Ok((estimator, reached))
     }
 
-    /// Share of flagged samples for several kinds of samples outside the training data.
+    /// Returns the flagged fraction for several kinds of samples outside the training data.
     ///
     /// # Errors
     /// [`ValidationError`] if a scene is invalid or cannot be recorded.
@@ -281,7 +279,7 @@ fn directions(data: &DataSet) -> Vec<Vector3<f64>> {
     (0..data.rows()).step_by(20).map(|row| direction(data, row)).collect()
 }
 
-/// Validation II with the default settings.
+/// Runs Validation II with the default settings.
 ///
 /// # Errors
 /// [`ValidationError`] if a scene is invalid, a calibration fails, or the network cannot be trained.

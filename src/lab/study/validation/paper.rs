@@ -1,8 +1,10 @@
-//! The paper's Validation III under its own conditions and under others: where its figures come out, and where they stop.
+//! The paper's Validation III under its own conditions and under others: where its results are reproduced, and where
+//! they are not.
 //!
-//! Takes the peg transfer with shorter and longer holds, less and more noise, and recordings; gives, for each, the errors of the
-//! paper's recipe inside the window that it was fitted to, the share of windows with a degree above 1, and the errors at the
-//! horizon beside delayed reflection; and what the handle does when a hand that was rendered to by this recipe lets go.
+//! Takes the peg transfer with shorter and longer holds, less and more noise, and recordings. Returns, for each, the
+//! errors of the paper's recipe inside the window that it was fitted to, the fraction of windows with a degree above 1,
+//! and the prediction errors at the horizon compared with delayed reflection; and the motion of the handle when a hand
+//! lets go of it during rendering by this recipe.
 
 pub mod judged;
 pub mod kick;
@@ -21,10 +23,8 @@ use crate::Experiment;
 /// Duration of the task under each condition, s.
 pub const SECONDS: f64 = 60.0;
 
-/// Options of this study.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Seed of the scene.
     pub seed: u64,
     /// Duration of the task under each condition, s.
     pub seconds: f64,
@@ -32,29 +32,27 @@ pub struct Options {
     pub recordings: Vec<Recording>,
 }
 
-/// Figures of one condition or recording.
+/// Results of one condition or recording.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
-    /// What was judged.
+    /// Name of the condition or recording.
     pub name: String,
     /// How the hand worked and the force was measured; absent for a recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Conditions>,
-    /// Its figures, in N or in the recording's unit.
+    /// Its results, in N or in the recording's unit.
     #[serde(flatten)]
     pub judged: Judged,
 }
 
-/// Results of this study.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Seed of the scene.
     pub seed: u64,
     /// Duration of the task under each condition, s.
     pub seconds: f64,
     /// Every condition, then every recording.
     pub entries: Vec<Entry>,
-    /// Letting go of the handle.
+    /// Releases of the handle.
     pub kicks: Vec<Kick>,
 }
 
@@ -105,7 +103,7 @@ mod tests {
     use super::*;
     use crate::release::Situation;
 
-    /// The lines of the paper (0.01 +- 0.02 N, 0.2 +- 0.4 N, 64 %), to its digits.
+    /// The paper's values (0.01 +- 0.02 N, 0.2 +- 0.4 N, 64 %), to its digits.
     #[test]
     fn the_papers_figures_come_out_under_its_conditions_and_stop_with_longer_holds() {
         let recorded = Conditions::PAPER.record(1, 20.0).unwrap();
@@ -114,7 +112,7 @@ mod tests {
         assert!(nonlinear.mae_n <= 0.015 && nonlinear.sd_n <= 0.025, "{inside:?}");
         assert!((0.145..0.25).contains(&linear.mae_n) && (0.3..0.45).contains(&linear.sd_n), "{inside:?}");
         assert!(less > 0.9 && window_share > 0.99 && (0.6..0.7).contains(&next_share), "{inside:?}");
-        // At rest in contact X vanishes and the force does not: no fit can say it, unless u is a displacement.
+        // At rest in contact X vanishes and the force does not: no fit can represent this, unless u is a displacement.
         let rests = Conditions { hold_s: 0.35, ..Conditions::PAPER }.record(1, 20.0).unwrap();
         let inside = judged::in_window(&rests).unwrap();
         assert!(inside.nonlinear.mae_n > 0.05 && inside.displacement.mae_n < 0.015, "{inside:?}");

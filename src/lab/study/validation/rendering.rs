@@ -21,33 +21,29 @@ const FILL_S: f64 = 1.0;
 /// Mean absolute error and standard deviation per axis, averaged over the three axes, N.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Figures {
-    /// Mean absolute error, N.
     pub mae_n: f64,
     /// Standard deviation of the error, N.
     pub sd_n: f64,
 }
 
-/// Figures of one mode.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ModeFigures {
     pub mode: Mode,
     pub error: Figures,
 }
 
-/// Results of Validation III.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rendering {
-    /// Clock of the loop.
     pub clock: ClockProfile,
     /// The paper's method, judged on the newest sample of the window that it was fitted to.
     pub in_window_nonlinear: Figures,
     /// The same with degree N = 1.
     pub in_window_linear: Figures,
-    /// Share of windows for which a degree above 1 was chosen.
+    /// Fraction of windows for which a degree above 1 was chosen.
     pub nonlinear_share: f64,
-    /// The delay of the link, s.
+    /// Delay of the link, s.
     pub delay_s: f64,
-    /// Errors at the horizon, per mode.
+    /// Prediction errors at the horizon, per mode.
     pub at_horizon: Vec<ModeFigures>,
 }
 

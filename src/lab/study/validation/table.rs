@@ -1,4 +1,4 @@
-//! The paper's figures and those of this project, with the reasons for differences.
+//! The paper's results and those of this project, with the reasons for differences.
 
 use std::fmt::Write as _;
 
@@ -10,14 +10,14 @@ use serde::Serialize;
 use super::{Agreement, Isolation, Options, Rendering, Report, ValidationError, study};
 use crate::{Experiment, Findings};
 
-/// One figure: the paper's value, this project's, and why they differ.
+/// One result: the paper's value, this project's, and why they differ.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// `I`, `II` or `III`.
     pub validation: &'static str,
-    /// What is compared, with its unit.
+    /// The compared quantity, with its unit.
     pub what: String,
-    /// The paper's value, or values for x, y, z; empty if the paper has no such figure.
+    /// The paper's value, or values for x, y, z; empty if the paper has no such result.
     pub paper: Vec<f64>,
     /// This project's value or values.
     pub ours: Vec<f64>,
@@ -75,9 +75,9 @@ fn isolation(two: &Isolation) -> Vec<Row> {
             "the same against the true force, MAE x y z (N)",
             &[],
             axes(&ours.truth, 0, |s| s.mae),
-            "the sensor under the tissue has noise of its own",
+            "the sensor under the tissue has its own noise",
         ),
-        row("II", "wrist force taken as it is, MAE x y z (N)", &[], axes(&ours.measured, 1, |s| s.mae), "no model"),
+        row("II", "uncorrected wrist force, MAE x y z (N)", &[], axes(&ours.measured, 1, |s| s.mae), "no model"),
         row("II", "linear regression, MAE x y z (N)", &[], axes(&ours.measured, 2, |s| s.mae), "same inputs"),
         row(
             "II",
@@ -160,7 +160,7 @@ impl Findings for Report {
         out + "\n" + &by_clock(&self.rendering)
     }
 
-    /// For the documentation, with the reasons.
+    /// Returns the tables for the documentation, with the reasons.
     fn files(&self) -> Vec<(String, String)> {
         let mut out = String::from("| | | paper | ours | why they differ |\n|---|---|---|---|---|\n");
         for Row { validation, what, paper, ours, why } in &self.table {
@@ -172,7 +172,7 @@ impl Findings for Report {
     }
 }
 
-/// Errors at the horizon, a column for each clock, and over those on the perfect clock where that is among them.
+/// Returns the errors at the horizon, a column for each clock, as ratios to the perfect clock if it is included.
 fn by_clock(all: &[Rendering]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let perfect = all.iter().find(|rendering| rendering.clock == ClockProfile::Perfect);

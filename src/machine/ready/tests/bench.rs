@@ -1,4 +1,4 @@
-//! A loop on made-up measurements, a person who does what is asked, and the ready check.
+//! A loop on synthetic measurements, a person who follows the instructions, and the ready check.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -23,28 +23,28 @@ use crate::{
 
 pub(super) const SIDE: Side = Side::Right;
 const TOOL_KG: f64 = 0.4;
-/// Nobody waits longer, ms.
+/// Maximum duration of a test, ms.
 const OVER_MS: u64 = 400_000;
 
-/// What is wrong with the rig or the person; in order by default.
+/// Flaws of the rig or the person; none by default.
 #[derive(Clone, Debug)]
 pub(super) struct Flaws {
     pub(super) bias_n: Vector3<f64>,
-    /// What the sensor makes of a push.
+    /// Measurement of a push by the sensor.
     pub(super) pushed: fn(Vector3<f64>) -> Vector3<f64>,
-    /// What the handle makes of a move of the hand in the picture.
+    /// Measurement of a move of the hand in the image by the handle.
     pub(super) moved: fn(Vector3<f64>) -> Vector3<f64>,
-    /// The handle moves by itself at this speed, m/s.
+    /// Speed at which the handle moves by itself, m/s.
     pub(super) pulls_m_s: f64,
     pub(super) trocar_m: Vector3<f64>,
     pub(super) sensor_hz: u32,
-    /// Damaged frames of the sensor at a time, s, since the beginning.
+    /// Number of damaged frames of the sensor at a time, s, since the start.
     pub(super) damaged: fn(f64) -> u64,
-    /// One period in so many is missed.
+    /// One period in this many is missed.
     pub(super) missed_every: u64,
     pub(super) obeys: fn(&Ask) -> bool,
     pub(super) supervised: bool,
-    /// While the arm is stopped nothing is measured.
+    /// Nothing is measured while the arm is stopped.
     pub(super) silent_when_stopped: bool,
 }
 
@@ -116,7 +116,7 @@ impl Bench {
         }
     }
 
-    /// What comes of a rig with these flaws.
+    /// Runs the check on a rig with these flaws.
     pub(super) fn judged(flaws: Flaws) -> Session {
         let mut bench = Self::new(subject(), flaws);
         bench.run();
@@ -127,7 +127,6 @@ impl Bench {
         self.ms as f64 * 1e-3
     }
 
-    /// Until the list is done.
     pub(super) fn run(&mut self) {
         while !self.session.is_finished() {
             assert!(self.ms < OVER_MS, "{:?}", self.session.list());
@@ -135,7 +134,6 @@ impl Bench {
         }
     }
 
-    /// One millisecond.
     pub(super) fn step(&mut self) {
         self.ms += 1;
         let missed_now = u64::from(self.ms.is_multiple_of(self.flaws.missed_every));
@@ -149,7 +147,6 @@ impl Bench {
         }
     }
 
-    /// Any tick of the loop.
     pub(super) fn some_tick(&mut self) -> Tick {
         let inputs = self.inputs();
         self.control.step([Some(inputs), None], &Timing::default()).1[0].unwrap()
@@ -161,7 +158,7 @@ impl Bench {
         let is_stopped = self.control.pair(SIDE).is_some_and(|pair| pair.state() == LoopState::Stopped);
         let inputs = Some(self.inputs()).filter(|_| !(self.flaws.silent_when_stopped && is_stopped));
         self.control.clear_events();
-        // As the supervisor does.
+        // Behaves like the supervisor.
         self.silent_s = if self.control.withholds_beat() && self.flaws.supervised { self.silent_s + 1e-3 } else { 0.0 };
         if self.silent_s > STALL_MAX_S {
             self.control.notice_stall(self.silent_s, now_s);
@@ -197,7 +194,7 @@ impl Bench {
         self.control.events().for_each(|event| self.session.event(event));
     }
 
-    /// 1 mm in 10 ms.
+    /// Moves by 1 mm in 10 ms.
     fn move_handle(&mut self, way: Move) {
         let leader_from_view = self.session.subject().rig.teleoperation.view_from_leader().inverse();
         self.handle_m += leader_from_view * (self.flaws.moved)(way.in_view() * 1e-3);
@@ -262,7 +259,6 @@ impl Bench {
     }
 }
 
-/// Where a check stands.
 pub(super) fn state_of(session: &Session, check: Check) -> State {
     session.list().iter().find(|entry| entry.check == check).unwrap().state
 }

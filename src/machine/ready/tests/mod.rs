@@ -1,4 +1,4 @@
-//! The ready check, point by point: in order it passes, and each flaw fails its own point and no other.
+//! The ready check, item by item: a rig in order passes, and each flaw fails its own check and no other.
 
 mod bench;
 mod sides;
@@ -14,7 +14,7 @@ use crate::{
     rig::{SIDES, checkup::Finding},
 };
 
-/// The only point that failed, and why.
+/// Returns the only check that failed, and the reason.
 fn only_failure(session: &Session) -> (Check, Cause) {
     let failed = |entry: &super::Entry| match entry.state {
         State::Failed(cause) => Some((entry.check, cause)),
@@ -167,7 +167,7 @@ fn a_dead_stop_fails_and_a_second_look_after_its_repair_keeps_the_rest() {
     bench.run();
     assert!(bench.session.has_passed());
     let kept = before.iter().zip(bench.session.list()).filter(|(before, now)| before == now).count();
-    assert_eq!(kept, before.len() - 1, "only the stop was looked at again");
+    assert_eq!(kept, before.len() - 1, "only the stop was checked again");
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn a_stop_that_the_loop_does_not_release_fails_with_its_reason() {
     while bench.session.ask() != Ask::Release {
         bench.step();
     }
-    // Until the loop knows that nothing is measured any more.
+    // Until the loop detects that nothing is measured any more.
     (0..500).for_each(|_| bench.step());
     bench.flaws.obeys = |_| true;
     bench.run();

@@ -1,4 +1,5 @@
-//! What is asked for on one side happens on the other: told by name, and nothing is told where each device is its own.
+//! The requested motion of one side happens on the other: it is reported by name, and nothing is reported if each
+//! device is on its own side.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -22,7 +23,7 @@ fn both() -> Subject {
     Subject { rig: RigConfig::load("emulated").unwrap(), arms: [arm.clone(), arm], ..one }
 }
 
-/// What both sides show: how far arm, marker and handle have come, m, and the push on the instrument, N.
+/// Measurements of both sides: displacement of arm, marker and handle, m, and the push on the instrument, N.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shows {
     arm_m: f64,
@@ -31,7 +32,7 @@ struct Shows {
     push_n: f64,
 }
 
-/// A second of rest, then these for a second.
+/// One second of rest, then these measurements for a second.
 fn ends(item: &mut impl Item, [right, left]: [Shows; 2]) -> Progress {
     let template = Bench::new(subject(), Flaws::default()).some_tick();
     let mut end = item.look(0.0);

@@ -1,6 +1,7 @@
-//! What the devices of one side have told last, and how they stand to each other: what the loop's measurements are made of.
+//! The last readings of the devices of one side, and their relations: the basis of the loop's measurements.
 //!
-//! In: readings in the devices' own frames (m, N, Nm, rad). Out: [`Inputs`] in `world`, with the readings beside them as they came.
+//! In: readings in the devices' own frames (m, N, Nm, rad). Out: [`Inputs`] in `world`, together with the unmodified
+//! readings.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -19,16 +20,14 @@ use crate::rig::{
     obstacle::Obstacle,
 };
 
-/// Which devices of the force path deliver now; `None` for those that are at another machine.
+/// Whether the devices of the force path deliver data now; `None` for those at another machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Delivering {
-    /// The handle.
     pub handle: Option<bool>,
-    /// Arm and sensor, both of them.
+    /// Both arm and sensor.
     pub follower: Option<bool>,
 }
 
-/// The newest readings of one side.
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub(super) mount: Arm,
@@ -44,17 +43,17 @@ pub struct Measured {
     pub(super) turned: Option<Stamped<ServoReading>>,
     /// Pose of the instrument from the measured joint angles.
     pub(super) pose: Option<Pose>,
-    /// Why the arm cannot be engaged from its present position.
+    /// Reason why the arm cannot be engaged from its current position.
     pub obstacle: Option<Obstacle>,
-    /// The handle's motors are on.
     pub force_is_on: bool,
 }
 
 impl Measured {
-    /// No readings yet; `at_wrist` tells where the force sensor is, `period_s` is that of the commands to the arm.
+    /// Starts without readings; `at_wrist` gives the place of the force sensor, `period_s` is the period of the
+    /// commands to the arm.
     ///
     /// # Errors
-    /// [`RigError`] if mount or trocar are impossible.
+    /// [`RigError`] if mount or trocar are invalid.
     pub fn new(side: Side, set: &ArmSet, period_s: f64, at_wrist: bool) -> Result<Self, RigError> {
         let word = side.word();
         Ok(Self {
@@ -75,23 +74,21 @@ impl Measured {
         })
     }
 
-    /// Takes a new reading of the handle.
     pub const fn take_handle(&mut self, reading: Stamped<HandleReading>) {
         self.hand = Some(reading);
     }
 
-    /// Takes a new reading of the arm.
     pub fn take_arm(&mut self, reading: Stamped<ArmReading>) {
         self.pose = Some(self.mount.pose(&Joints::from(reading.value.joint_rad)));
         self.joints = Some(reading);
     }
 
-    /// Takes a new reading of the force sensor; one that must not be used ends what was known before.
+    /// Stores a new reading of the force sensor; an unusable one invalidates the previous reading.
     pub fn take_force(&mut self, reading: Stamped<ForceReading>) {
         self.force = Some(reading).filter(|reading| reading.value.status.is_usable());
     }
 
-    /// Angles of the arm's joints as it told them last, rad.
+    /// Returns the last reported angles of the arm's joints, rad.
     pub fn joints_rad(&self) -> Option<[f64; ARM_JOINTS]> {
         self.joints.map(|joints| joints.value.joint_rad)
     }
@@ -99,18 +96,18 @@ impl Measured {
     /// Starts the inverse kinematics at these joint angles (rad).
     ///
     /// # Errors
-    /// [`StartError`] if the arm cannot begin there.
+    /// [`StartError`] if the arm cannot start there.
     pub fn begin(&self, joint_rad: &Joints) -> Result<Inverse, StartError> {
         Inverse::new(self.mount, self.rcm, self.period_s, joint_rad).map(|inverse| inverse.within(self.limits))
     }
 
-    /// The measurements of a side without servos and shared devices; see [`Measured::with`].
+    /// Returns the measurements of a side without servos and shared devices; see [`Measured::with`].
     pub fn inputs(&self, now_s: f64, delivering: Delivering) -> Option<Inputs> {
         self.with(now_s, delivering, None, &Shared::default())
     }
 
-    /// The measurements; `None` unless every device of the force path delivers and none of its readings is too old. What is at
-    /// another machine is at rest in them, and has no force.
+    /// Returns the measurements; `None` unless every device of the force path delivers data and no reading is too old.
+    /// A part at another machine is at rest in them, and has no force.
     pub(super) fn with(
         &self,
         now_s: f64,
@@ -141,7 +138,6 @@ impl Measured {
         })
     }
 
-    /// The measurements of arm and sensor.
     fn follower_inputs(&self, now_s: f64, jaws: Option<(&JawsControl, bool)>, shared: &Shared) -> Option<Inputs> {
         let joints = self.joints?;
         let force = self.force?;
@@ -183,13 +179,13 @@ impl Measured {
         }
     }
 
-    /// Where the tracker stands, as the hand-eye calibration found it: steadier than by way of the instrument's marker, whose noise would be
-    /// seen at the end of a lever of some decimetres.
+    /// Returns the tracker's pose found by the hand-eye calibration. It is steadier than a pose computed through the
+    /// instrument's marker, whose noise would be amplified by a lever of several decimetres.
     fn world_from_c(&self) -> Option<Isometry3<f64>> {
         self.hand_eye.map(|hand_eye| rigid(self.mount.world_from_base()) * hand_eye.base_from_c)
     }
 
-    /// What the frame calibrations are made of; the other side's poses are added by the rig.
+    /// Returns the input of the frame calibrations; the rig adds the other side's poses.
     fn frames(&self, pose: &Pose, force: &ForceReading, shared: &Shared) -> FrameSample {
         let base_from_flange = self.mount.world_from_base().inverse() * pose.chain.world_from_flange;
         FrameSample {
@@ -218,7 +214,7 @@ impl Measured {
             world_from_s1: Some(*world_from_s1),
             world_from_m: self.s1_from_m.map(|s1_from_m| world_from_s1 * s1_from_m),
             m_from_c: shared.m_from_c(),
-            // A tool that was taken out has no depth.
+            // A tool outside the trocar has no depth.
             insertion_m: Some(pose.insertion_m(trocar_m)).filter(|_| in_trocar),
             tissue_n: shared.tissue_n,
         })

@@ -1,5 +1,3 @@
-//! Arms.
-
 use std::net::SocketAddr;
 
 use nima_core::kinematics::JointLimits;
@@ -20,12 +18,12 @@ pub enum FollowerSettings {
     Kinova(kinova::Settings),
     /// `make = "simulated"`: no hardware.
     Simulated(simulated_arm::Settings),
-    /// `make = "external"`: a program of the lab over UDP.
+    /// `make = "external"`: a user's program over UDP.
     External(external::Settings),
 }
 
 impl Serialize for FollowerSettings {
-    /// As a rig file has it: the settings alone.
+    /// Serialises the settings alone, as in a rig file.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Kinova(settings) => settings.serialize(serializer),
@@ -36,10 +34,10 @@ impl Serialize for FollowerSettings {
 }
 
 impl FollowerSettings {
-    /// Its makes as a rig file names them, the usual one first.
+    /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["kinova", "simulated", "external"];
 
-    /// Of an arm by Kinova.
+    /// Returns the settings if the arm is made by Kinova.
     pub const fn kinova(&self) -> Option<&kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
@@ -47,7 +45,7 @@ impl FollowerSettings {
         }
     }
 
-    /// The settings, if it is an arm by Kinova.
+    /// Returns the settings if the arm is made by Kinova.
     pub const fn kinova_mut(&mut self) -> Option<&mut kinova::Settings> {
         match self {
             Self::Kinova(settings) => Some(settings),
@@ -55,7 +53,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Its serial number in the rig file.
+    /// Returns the serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
         match self {
             Self::Kinova(settings) => settings.serial_number.clone(),
@@ -64,7 +62,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    /// Returns the make for the screen, one of [`Part::makes`](crate::rig::Part::makes).
     pub(in crate::rig) const fn maker(&self) -> &'static str {
         match self {
             Self::Kinova(_) => "Kinova",
@@ -73,12 +71,12 @@ impl FollowerSettings {
         }
     }
 
-    /// Whether there is no hardware: such arms cannot be exchanged.
+    /// Returns whether there is no hardware: such arms cannot be swapped.
     pub(in crate::rig) const fn is_simulated(&self) -> bool {
         matches!(self, Self::Simulated(_))
     }
 
-    /// The address at which an external one is listened for.
+    /// Returns the local address for an external arm.
     pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
         match self {
             Self::Kinova(_) | Self::Simulated(_) => None,
@@ -98,8 +96,8 @@ impl FollowerSettings {
         }
     }
 
-    /// Checks that an emulated rig has an emulated arm: handle and sensor of an emulated rig belong to a world that
-    /// this arm moves, and a simulated arm has no such world.
+    /// Checks that an emulated rig has an emulated arm: the arm moves the emulated world to which handle and sensor
+    /// belong, and a simulated arm has no such world.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         match self {
             Self::Kinova(_) => Ok(()),
@@ -108,7 +106,7 @@ impl FollowerSettings {
         }
     }
 
-    /// Limits of position, speed and acceleration of its joints.
+    /// Returns the limits of position, speed and acceleration of the joints.
     pub(in crate::rig) fn joint_limits(&self) -> JointLimits {
         match self {
             Self::Kinova(settings) => settings.joint_limits(),

@@ -1,5 +1,3 @@
-//! Handles.
-
 use std::net::SocketAddr;
 
 use nima_devices::{
@@ -12,7 +10,6 @@ use serde::{Deserialize, Serialize, Serializer};
 use super::Opener;
 use crate::rig::{DeviceRole, Part, RigError, RosterEntry, Side};
 
-/// The handle of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeaderSettings {
@@ -20,12 +17,12 @@ pub enum LeaderSettings {
     ForceDimension(force_dimension::Settings),
     /// `make = "haply"`: Inverse3 or Minverse.
     Haply(haply::Settings),
-    /// `make = "external"`: a program of the lab over UDP.
+    /// `make = "external"`: a user's program over UDP.
     External(external::Settings),
 }
 
 impl Serialize for LeaderSettings {
-    /// As a rig file has it: the settings alone.
+    /// Serialises the settings alone, as in a rig file.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::ForceDimension(settings) => settings.serialize(serializer),
@@ -36,10 +33,10 @@ impl Serialize for LeaderSettings {
 }
 
 impl LeaderSettings {
-    /// Its makes as a rig file names them, the usual one first.
+    /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["force_dimension", "haply", "external"];
 
-    /// The settings, if it is a handle by Force Dimension.
+    /// Returns the settings if the handle is made by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {
         match self {
             Self::ForceDimension(settings) => Some(settings),
@@ -47,7 +44,7 @@ impl LeaderSettings {
         }
     }
 
-    /// The settings, if it is a handle by Force Dimension.
+    /// Returns the settings if the handle is made by Force Dimension.
     pub const fn force_dimension_mut(&mut self) -> Option<&mut force_dimension::Settings> {
         match self {
             Self::ForceDimension(settings) => Some(settings),
@@ -55,7 +52,7 @@ impl LeaderSettings {
         }
     }
 
-    /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    /// Returns the make for the screen, one of [`Part::makes`](crate::rig::Part::makes).
     pub(crate) const fn maker(&self) -> &'static str {
         match self {
             Self::ForceDimension(_) => "Force Dimension",
@@ -76,8 +73,8 @@ impl LeaderSettings {
         }
     }
 
-    /// Checks that the handle is emulated if and only if the rig is. A real handle must never be replaced by an
-    /// emulated one unnoticed, and an emulated rig, which engages by itself, must never move a real one.
+    /// Checks that the handle is emulated if and only if the rig is. An emulated handle must never replace a real one
+    /// unnoticed, and an emulated rig, which engages automatically, must never move a real handle.
     pub(in crate::rig) fn check_emulated(&self, rig_is_emulated: bool) -> Result<(), Trouble> {
         let settings = match self {
             Self::ForceDimension(settings) => settings,
@@ -89,30 +86,30 @@ impl LeaderSettings {
         }
         let value = settings.emulator.map_or_else(|| "not given".to_owned(), |address| address.to_string());
         let allowed =
-            "an emulated rig (emulated = true) gives each handle its 127.0.0.1:PORT, and no other rig does".to_owned();
+            "127.0.0.1:PORT for each handle of an emulated rig (emulated = true), omitted on any other rig".to_owned();
         Err(Trouble::Setting { key: "emulator".to_owned(), value, allowed })
     }
 
-    /// Checks that the settings tell the two handles apart.
+    /// Checks that the settings distinguish the two handles.
     pub(in crate::rig) fn check_beside(&self, other: &Self) -> Result<(), Trouble> {
         let (one, other) = match (self, other) {
             (Self::ForceDimension(one), Self::ForceDimension(other)) => (one, other),
             (Self::Haply(one), Self::Haply(other)) if one.port == other.port => {
-                let allowed = "another port than the left handle's".to_owned();
+                let allowed = "a different port than the left handle's".to_owned();
                 return Err(Trouble::Setting { key: "port".to_owned(), value: one.port.clone(), allowed });
             }
-            // External ones have addresses of their own, which are checked with those of all parts.
+            // External handles have separate addresses, which are checked together with the addresses of all parts.
             _ => return Ok(()),
         };
         if one.serial.is_some() && one.serial != other.serial {
             return Ok(());
         }
         let value = one.serial.map_or_else(|| "not given".to_owned(), |serial| serial.to_string());
-        let allowed = "two handles are told apart by their serial numbers: give each its own".to_owned();
+        let allowed = "a different serial number for each of two handles".to_owned();
         Err(Trouble::Setting { key: "serial".to_owned(), value, allowed })
     }
 
-    /// The address at which an external one is listened for.
+    /// Returns the local address for an external handle.
     pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
         match self {
             Self::ForceDimension(_) | Self::Haply(_) => None,
@@ -120,17 +117,17 @@ impl LeaderSettings {
         }
     }
 
-    /// Rate of its readings, Hz.
     pub(in crate::rig) const fn rate_hz(&self) -> f64 {
         match self {
             Self::ForceDimension(settings) => settings.rate_hz,
-            // It is asked once in every tick.
+            // The handle is queried once per tick.
             Self::Haply(_) => f64::INFINITY,
             Self::External(settings) => settings.rate_hz,
         }
     }
 
-    /// These settings for the handle of a side: without a word in the file it must be made for that hand.
+    /// Returns these settings for the handle of a side: unless the file says otherwise, the handle must be made for
+    /// that hand.
     #[must_use]
     pub(in crate::rig) fn for_hand_of(&self, side: Side) -> Self {
         let mut of_side = self.clone();
@@ -140,12 +137,12 @@ impl LeaderSettings {
         of_side
     }
 
-    /// The hand that it must be made for, if the settings say so.
+    /// Returns the hand for which the handle must be made, if the settings specify one.
     pub(in crate::rig) fn hand(&self) -> Option<Side> {
         self.force_dimension().and_then(|settings| settings.hand)
     }
 
-    /// Its serial number in the rig file.
+    /// Returns the serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
         match self {
             Self::ForceDimension(settings) => settings.serial.map(|serial| serial.to_string()),
@@ -177,7 +174,7 @@ impl LeaderSettings {
         }
     }
 
-    /// Begins to open the handle that leads a simulated rig; `lever` takes its force away from another thread.
+    /// Starts opening the handle that controls a simulated rig; `lever` releases its force from another thread.
     ///
     /// # Errors
     /// [`RigError`] if no thread can be created.
@@ -190,7 +187,7 @@ impl LeaderSettings {
         Ok((slot, entry))
     }
 
-    /// A test of it, under this name.
+    /// Returns a test of the handle, under this name.
     pub fn probe(&self, name: &str) -> Box<dyn Probe> {
         match self.clone() {
             Self::ForceDimension(settings) => probes::handle(name, settings),

@@ -1,8 +1,8 @@
 //! The makes of handle, arm and force sensor that a rig file can choose with `make = "..."`; the first one listed is
 //! the default.
 //!
-//! There is one file for each kind of device, and only that file knows the makes: a new make is a variant there and an
-//! arm in each `match`.
+//! Each kind of device has one file, and only that file depends on the makes: a new make is a variant there and an arm
+//! in each `match`.
 
 mod follower;
 mod leader;
@@ -21,16 +21,17 @@ use toml::{
 
 use crate::rig::Side;
 
-/// How a device is opened; `P` is `Box<dyn Leader>` and so on.
+/// Opens a device; `P` is `Box<dyn Leader>` and so on.
 pub(super) struct Opener<P> {
     /// Name of the driver, for the screen.
     pub(super) driver: String,
-    /// Opens it; called again whenever the connection was lost.
+    /// Opens the device; called again whenever the connection was lost.
     pub(super) open: Box<dyn FnMut() -> Result<P, Trouble> + Send>,
     pub(super) clear_faults: Option<ClearFaults>,
 }
 
-/// Refuses a make that an emulated rig cannot have: its devices belong to one world, in which this one is not.
+/// Refuses a make that an emulated rig cannot have: its devices belong to one emulated world, which does not include
+/// this make.
 fn not_emulated(make: &str, rig_is_emulated: bool) -> Result<(), Trouble> {
     if !rig_is_emulated {
         return Ok(());
@@ -38,15 +39,15 @@ fn not_emulated(make: &str, rig_is_emulated: bool) -> Result<(), Trouble> {
     Err(Trouble::Setting {
         key: "make".to_owned(),
         value: make.to_owned(),
-        allowed: "an emulated rig (emulated = true) emulates every device: leave `make` out".to_owned(),
+        allowed: "omit `make` on an emulated rig (emulated = true), which emulates every device".to_owned(),
     })
 }
 
-/// Where a rig file cannot be read, as bytes of its text, and why.
+/// Position of a fault in a rig file, as bytes of its text, and the reason.
 pub(crate) type Misread = (Range<usize>, String);
 
-/// Writes every part of a rig file with its make taken out, `arm = { kinova = { ... } }`: the form that serde reads as an enum. Each
-/// value keeps its place in the text, so that what is wrong below a make is told with its line.
+/// Rewrites every part of a rig file as `arm = { kinova = { ... } }`, the form that serde reads as an enum. Each value
+/// keeps its position in the text, so that faults below a make are reported with their line.
 pub(crate) fn take_out_makes(rig: &mut DeTable<'_>) -> Result<(), Misread> {
     if let Some(desk) = below(rig, "desk") {
         choose(desk, "handle", LeaderSettings::MAKES)?;
@@ -70,14 +71,14 @@ fn below<'a, 'i>(table: &'a mut DeTable<'i>, key: &str) -> Option<&'a mut DeTabl
     }
 }
 
-/// The make of one part, the first of these where it says nothing.
+/// Returns the make of one part, by default the first of these.
 fn choose(table: &mut DeTable<'_>, part: &str, known: &[&'static str]) -> Result<(), Misread> {
     let Some(settings) = below(table, part) else { return Ok(()) };
     let make = match settings.remove("make") {
         None => known[0],
         Some(make) => {
             let named = known.iter().find(|name| make.get_ref().as_str() == Some(name));
-            named.ok_or_else(|| (make.span(), format!("make is one of: {}", known.join(", "))))?
+            named.ok_or_else(|| (make.span(), format!("make must be one of: {}", known.join(", "))))?
         }
     };
     let settings = std::mem::take(settings);
@@ -97,7 +98,7 @@ mod tests {
 
     const SIMULATED: &str = "make = \"simulated\"\nstart_rad = [2.38, -1.34, -1.37, 1.91, -1.28, 1.68, 0.92]\n";
 
-    /// What this text says of an arm, as the arm of a rig file.
+    /// Parses this text as the arm of a rig file.
     fn arm(text: &str) -> Result<FollowerSettings, String> {
         let paper = toml::to_string(&RigConfig::load("paper").unwrap()).unwrap();
         let (before, rest) = paper.split_once("[devices.right.arm]\n").unwrap();

@@ -1,5 +1,3 @@
-//! Force-torque sensors.
-
 use std::net::SocketAddr;
 
 use nima_devices::{
@@ -11,18 +9,17 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::Opener;
 
-/// A force-torque sensor of a rig file.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SensorSettings {
     /// `make = "bota"`, the default.
     Bota(bota::Settings),
-    /// `make = "external"`: a program of the lab over UDP.
+    /// `make = "external"`: a user's program over UDP.
     External(external::Settings),
 }
 
 impl Serialize for SensorSettings {
-    /// As a rig file has it: the settings alone.
+    /// Serialises the settings alone, as in a rig file.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Bota(settings) => settings.serialize(serializer),
@@ -32,10 +29,10 @@ impl Serialize for SensorSettings {
 }
 
 impl SensorSettings {
-    /// Its makes as a rig file names them, the usual one first.
+    /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["bota", "external"];
 
-    /// Of a sensor by Bota.
+    /// Returns the settings if the sensor is made by Bota.
     pub const fn bota(&self) -> Option<&bota::Settings> {
         match self {
             Self::Bota(settings) => Some(settings),
@@ -43,7 +40,7 @@ impl SensorSettings {
         }
     }
 
-    /// The settings, if it is a sensor by Bota.
+    /// Returns the settings if the sensor is made by Bota.
     pub const fn bota_mut(&mut self) -> Option<&mut bota::Settings> {
         match self {
             Self::Bota(settings) => Some(settings),
@@ -51,7 +48,7 @@ impl SensorSettings {
         }
     }
 
-    /// Its serial number in the rig file.
+    /// Returns the serial number in the rig file.
     pub(in crate::rig) fn serial(&self) -> Option<String> {
         match self {
             Self::Bota(settings) => settings.serial_number.clone(),
@@ -59,7 +56,7 @@ impl SensorSettings {
         }
     }
 
-    /// Its make on the screen, one of [`Part::makes`](crate::rig::Part::makes).
+    /// Returns the make for the screen, one of [`Part::makes`](crate::rig::Part::makes).
     pub(in crate::rig) const fn maker(&self) -> &'static str {
         match self {
             Self::Bota(_) => "Bota",
@@ -75,7 +72,7 @@ impl SensorSettings {
         }
     }
 
-    /// The address at which an external one is listened for.
+    /// Returns the local address for an external sensor.
     pub(in crate::rig) const fn listens_at(&self) -> Option<SocketAddr> {
         match self {
             Self::Bota(_) => None,
@@ -94,7 +91,7 @@ impl SensorSettings {
         }
     }
 
-    /// The device file through which it is reached, if it has one.
+    /// Returns the device file of the sensor, if it has one.
     pub(in crate::rig) const fn device_file(&mut self) -> Option<&mut String> {
         match self {
             Self::Bota(bota::Settings { transport: bota::Transport::Socket, .. }) | Self::External(_) => None,
@@ -102,7 +99,6 @@ impl SensorSettings {
         }
     }
 
-    /// Rate of its readings, Hz.
     pub(in crate::rig) fn expected_hz(&self) -> f64 {
         match self {
             Self::Bota(settings) => settings.expected_hz(),
@@ -110,7 +106,6 @@ impl SensorSettings {
         }
     }
 
-    /// Whether its readings have an acceleration.
     pub(in crate::rig) fn is_inertial(&self) -> bool {
         match self {
             Self::Bota(settings) => settings.is_inertial(),

@@ -10,7 +10,7 @@ fn times(profile: ClockProfile, seed: u64) -> Vec<TickTime> {
     (0..SECONDS * 1000).map(|_| times.advance()).collect()
 }
 
-/// Fraction of ticks that woke more than this late.
+/// Returns the fraction of ticks that woke more than this late.
 fn later_than(times: &[TickTime], limit_s: f64) -> f64 {
     times.iter().filter(|time| time.wake_s > limit_s).count() as f64 / times.len() as f64
 }
@@ -61,7 +61,7 @@ fn late_ticks_are_as_many_and_as_late_as_named() {
 
 #[test]
 fn recorded_clocks_are_as_late_as_the_recordings() {
-    // Later than half a millisecond, and missed periods, %.
+    // Fraction of ticks later than half a millisecond, and of missed periods, %.
     for (profile, late, missed) in
         [(ClockProfile::Quiet, 0.1..0.3, 0.1..0.35), (ClockProfile::Busy, 4.0..6.0, 3.5..7.0)]
     {
@@ -72,7 +72,7 @@ fn recorded_clocks_are_as_late_as_the_recordings() {
         ];
         assert!(late.contains(&late_percent), "{profile}: {late_percent} % late");
         assert!(missed.contains(&missed_percent), "{profile}: {missed_percent} % missed");
-        // They come in clusters: after a late tick another one is likely within 20 ticks.
+        // Late ticks come in clusters: after one, another is likely within 20 ticks.
         let is_late = |time: &TickTime| time.wake_s > 0.5e-3;
         let after_late: Vec<_> = all.windows(21).filter(|window| is_late(&window[0])).collect();
         let (again, count) =

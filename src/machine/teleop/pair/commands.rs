@@ -16,7 +16,7 @@ use crate::{
 };
 
 impl<L: Link> Pair<L> {
-    /// Carries out one command, or returns why it cannot. [`Command::Shutdown`] is handled by the runtime.
+    /// Carries out one command, or returns the reason for a refusal. [`Command::Shutdown`] is handled by the runtime.
     ///
     /// # Errors
     /// [`Refusal`] if the command is not allowed in this state, its value is out of range, or a measurement forbids it.
@@ -89,7 +89,7 @@ impl<L: Link> Pair<L> {
         if self.state().is_latched() { Err(Refusal::State(self.state())) } else { Ok(()) }
     }
 
-    /// In idle only: a person who handles the arm must be safe from its motion.
+    /// Idle only, because a person who handles the arm must be safe from its motion.
     fn prompt(&mut self, prompt: Prompt) -> Result<(), Refusal> {
         if !prompt.is_finite() {
             return Err(Refusal::OutOfRange);
@@ -112,12 +112,11 @@ impl<L: Link> Pair<L> {
         Ok(())
     }
 
-    /// Computes the modes that are asked for, and no others.
     pub(super) fn compute(&mut self) {
         self.follower.identifier.compute(self.leader.modes.computed());
     }
 
-    /// The delay becomes a whole number of samples; this is the delay that is shown on the screen.
+    /// Rounds the delay to a whole number of samples; the screen shows the rounded delay.
     pub(super) fn set_delay(&mut self, delay_s: f64) {
         let delay_s = self.settings.delay_ticks(delay_s) as f64 / self.settings.rate_hz;
         self.link.set_delay(delay_s);
@@ -125,12 +124,12 @@ impl<L: Link> Pair<L> {
         self.leader.renderer.set_delay(delay_s);
     }
 
-    /// Takes what the follower's half sends from the other machine; returns its force.
+    /// Stores data of the follower's half at the other machine; returns its force.
     pub(super) fn hear(&mut self, identified: &Identified) -> ForceReport {
         if let Some(delay_s) = self.link.turn_far(identified, &self.settings) {
             self.leader.renderer.set_delay(delay_s);
         }
-        // What an identification here would send is withheld in the same way.
+        // The packets of a local identification are suppressed in the same way.
         let is_withheld = self.withholds(Watchdog::Link);
         self.link.hear((!is_withheld).then_some(identified))
     }
@@ -143,7 +142,7 @@ impl<L: Link> Pair<L> {
         Ok(())
     }
 
-    /// Releases a stop or a fault here, or else the stop of the other machine, which obeys the count.
+    /// Releases a stop or a fault here, otherwise the stop of the other machine, which follows the count.
     fn release(&mut self, t_s: f64) -> Result<(), Refusal> {
         let is_of_other_machine = self.link.far_stop().is_some() && !self.state().is_latched();
         if !is_of_other_machine {
@@ -161,14 +160,14 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Raises a fault that matters only while drives are on, or while its watchdog is tested.
+    /// Raises a fault that matters only while drives are on or its watchdog is tested.
     pub(in crate::teleop) fn fail_if_driven(&mut self, fault: Fault, t_s: f64) {
         if self.state().permits().drives || self.is_tested(fault) {
             self.fail(fault, t_s);
         }
     }
 
-    /// Actions on entering a state: everything starts from zero force and a follower at rest.
+    /// Actions on entering a state: every state starts from zero force and a follower at rest.
     pub(super) fn enter(&mut self, change: Change<Fault>, t_s: f64) {
         let Change { from, to, why } = change;
         self.note(Event::StateChanged { t_s, side: self.side, from, to, why });

@@ -1,4 +1,4 @@
-//! Reasons against an engagement or a release, reported to whoever asked for it.
+//! Objections to an engagement or a release, reported to the requester.
 
 use nima_core::safety::Seen;
 
@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl<L: Link> Pair<L> {
-    /// Reasons against engaging that are known now; the interlock checks the state.
+    /// Returns the current objection to engaging; the interlock checks the state.
     pub(super) fn may_engage(&self) -> Result<(), Refusal> {
         if self.state() != LoopState::Idle {
             return Ok(());
@@ -18,7 +18,7 @@ impl<L: Link> Pair<L> {
         if self.checked == Some(false) {
             return Err(Refusal::NotChecked);
         }
-        // A force that is mostly weight and bias must never be rendered.
+        // A force that consists mostly of weight and bias must never be rendered.
         if !self.may_know_force() {
             return Err(Refusal::ForceUnknown(self.follower.force.source));
         }
@@ -34,17 +34,17 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// The fault that the other machine's stop is here.
+    /// Returns the local fault that follows from the other machine's stop.
     pub(super) fn far_fault(&self) -> Option<Fault> {
         self.link.far_stop().map(|stop| Fault::FarEnd { stop })
     }
 
-    /// Whether an engagement would be refused now, because something has not been heard of yet.
+    /// Returns whether an engagement would be refused now because a device has not reported yet.
     pub(in crate::teleop) fn is_waiting(&self) -> bool {
         matches!(self.samples.last.and_then(|seen| seen.obstacle), Some(Obstacle::Waiting(_)))
     }
 
-    /// A stop and a fault are not released while a cause of a fault is present.
+    /// Refuses the release of a stop or a fault while a cause of a fault is present.
     pub(super) fn may_release(&self, t_s: f64) -> Result<(), Refusal> {
         if !self.state().is_latched() {
             return Ok(());
@@ -55,7 +55,7 @@ impl<L: Link> Pair<L> {
         self.plausibility.doubt().map_or(Ok(()), |what| Err(Refusal::StillPresent(Fault::Implausible { what })))
     }
 
-    /// What an engagement in progress is waiting for.
+    /// Returns the condition for which an engagement in progress is waiting.
     pub(super) fn waits_for(&self, seen: Seen, inputs: Option<&Inputs>) -> Refusal {
         if !seen.powered {
             Refusal::DrivesOff

@@ -17,21 +17,19 @@ use crate::{
     },
 };
 
-/// Missed periods in a row that make a fault while drives are on, as time, s.
+/// Time of consecutive missed periods that is a fault while drives are on, s.
 const STALLED_AFTER_S: f64 = 0.050;
 /// A tip that moved more than this within a tick is not at rest, and the pair is not engaged, m.
 const AT_REST_M: f64 = 0.2e-3;
 
-/// What the link delivered in a tick.
 #[derive(Clone, Copy, Debug)]
 struct Delivery {
-    /// Age beyond the delay, s; infinite without a parcel.
+    /// Age beyond the delay, s; infinite without a packet.
     age_s: f64,
-    /// The force that was measured one delay ago, N, if it is known.
+    /// The force measured one delay ago, N, if known.
     delayed_n: Vector3<f64>,
 }
 
-/// What the hand feels in a tick.
 #[derive(Clone, Copy, Debug)]
 struct Felt {
     /// Force after the gates, N, in the workspace.
@@ -41,8 +39,8 @@ struct Felt {
 }
 
 impl<L: Link> Pair<L> {
-    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`]. All that a pair learns of the
-    /// other one is whether that had failed after the tick before.
+    /// Executes one tick: measurements in, commands out, and everything to display or record in the [`Tick`]. The only
+    /// information about the other pair is whether it had failed after the previous tick.
     pub fn step(&mut self, other_has_failed: bool, inputs: Option<Inputs>, timing: &Timing) -> (Outputs, Tick) {
         let now_s = timing.now_s;
         if other_has_failed {
@@ -53,19 +51,19 @@ impl<L: Link> Pair<L> {
         let inputs = inputs.filter(|inputs| inputs.is_finite() && !self.withholds(Watchdog::Source));
         let moved_m = self.samples.moved_m(inputs.as_ref());
 
-        // The follower's half: readings, force at the tip, identification, parcels into the link.
+        // The follower's half: readings, force at the tip, identification, packets into the link.
         let inputs = inputs.map(|inputs| self.take_in(inputs, timing));
         if inputs.is_none() && self.link.far().is_none() {
             self.follower.miss(timing);
         }
 
-        // What the interlock permits.
+        // The permissions of the interlock.
         self.raise_faults(inputs.as_ref(), timing);
         self.step_interlock(inputs.as_ref(), moved_m, now_s);
         self.drop_old_force(now_s);
 
-        // The leader's half: hand to command, parcels and motion to a force, gates, handle. Without a new sample the link keeps delivering
-        // what is under way, which grows older, and the age gate removes the force.
+        // The leader's half: hand to command, packets and motion to a force, gates, handle. Without a new sample the
+        // link keeps delivering packets under way, which grow older, and the age gate removes the force.
         let seen = self.samples.last.unwrap_or(Inputs::NOTHING);
         let lead = self.leader.lead(&seen);
         let rendered = self.leader.render(&seen, &lead, &mut self.link, timing);
@@ -79,8 +77,8 @@ impl<L: Link> Pair<L> {
         (outputs, tick)
     }
 
-    /// A time that does not advance by whole periods is a fault. Where it stands or goes back, the identification is reset: parcels with a
-    /// time in the future would never grow old.
+    /// Raises a fault if the time does not advance by whole periods. If it stands still or goes back, the
+    /// identification is reset, because packets with a time in the future would never grow old.
     fn check_clock(&mut self, timing: &Timing) {
         let passed = self.ticks.pass(timing);
         if passed != Passed::Evenly {
@@ -94,7 +92,8 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Takes a sample through the follower's half; returns it with impossible jumps replaced by the last plausible value.
+    /// Passes a sample through the follower's half; returns it with impossible jumps replaced by the last plausible
+    /// value.
     fn take_in(&mut self, mut inputs: Inputs, timing: &Timing) -> Inputs {
         let now_s = timing.now_s;
         let was_usable = self.follower.force.source.is_usable();
@@ -114,7 +113,7 @@ impl<L: Link> Pair<L> {
             self.follower.force.tip_n = admitted.force_n;
         }
         self.leader.gates.move_hand(inputs.hand_s(now_s), inputs.hand.position_m);
-        // An unusable force is a missing sample: no parcel is sent for it.
+        // A sample with an unusable force counts as missing: no packet is sent for it.
         let sends = is_usable && !self.withholds(Watchdog::Link);
         match self.link.far_mut() {
             Some(far) => far.admit(&self.follower.force),
@@ -124,7 +123,7 @@ impl<L: Link> Pair<L> {
         inputs
     }
 
-    /// What plausibility looks at in this sample.
+    /// Returns the input of the plausibility check for this sample.
     fn observed(&self, inputs: &Inputs, now_s: f64) -> Observed {
         let force = &self.follower.force;
         let silent_s = inputs.silent_s;
@@ -132,7 +131,7 @@ impl<L: Link> Pair<L> {
         Observed {
             t_s: now_s,
             raw: inputs.raw,
-            // An unknown force is none to this check; the first known one begins it again.
+            // An unknown force counts as zero for this check; the first known force restarts it.
             force_n: if force.source.is_usable() { force.tip_n } else { Vector3::zeros() },
             least_n: force.source.least_n(),
             world_from_s1: inputs.sensed.wrist().and_then(|sample| sample.world_from_s1),
@@ -197,7 +196,7 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// After the fault of the silence, which is the cause.
+    /// Called after the fault for the silence, which is the cause.
     fn drop_old_force(&mut self, now_s: f64) {
         if !self.samples.are_silent(now_s) {
             return;
@@ -208,21 +207,21 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Receives the parcel of now, looks at it, and raises a fault if it is too old.
+    /// Receives the current packet, checks it, and raises a fault if it is too old.
     fn receive(&mut self, seen: &Inputs, now_s: f64) -> Delivery {
         let delay_s = self.link.delay_s();
-        // Until the first parcel arrives, the delay line is still filling.
+        // Until the first packet arrives, the delay line is still filling.
         let Some(parcel) = self.link.receive(now_s) else {
             self.link.note_age(None);
             return Delivery { age_s: f64::INFINITY, delayed_n: UNKNOWN_N };
         };
         self.plausibility.delivered(&parcel.force_n, parcel.t_s);
-        // Over a network a parcel may be younger than the delay says; its force still ends with the line.
+        // Over a network a packet may be younger than its delay; its force still ends when the connection does.
         let age_s = (now_s - parcel.t_s - delay_s + seen.age_s).max(seen.silent_s);
         let is_known = parcel.fresh && age_s < self.leader.gates.chain.settings().zero_after_s;
         let delayed_n = if is_known { parcel.force_n } else { UNKNOWN_N };
         self.link.note_age(Some(age_s));
-        // An engagement waits for the first new parcel.
+        // An engagement waits for the first new packet.
         let is_awaited = self.link.is_old() && self.state() == LoopState::Ready;
         if age_s > LINK_SILENT_AFTER_S && !is_awaited {
             self.fail_if_driven(Fault::LinkSilent, now_s);
@@ -230,7 +229,7 @@ impl<L: Link> Pair<L> {
         Delivery { age_s, delayed_n }
     }
 
-    /// Takes the force of the mode through the gates to the handle, and that on the jaws to the gripper.
+    /// Passes the force of the mode through the gates to the handle, and the force on the jaws to the gripper.
     fn feel(
         &mut self,
         inputs: Option<&Inputs>,
@@ -251,8 +250,8 @@ impl<L: Link> Pair<L> {
             force_n,
             age_s,
             speed_m_s: self.leader.gates.hand_speed_m_s,
-            // On the axes of the force. The travel of the hand itself, before scaling. A missing sample hides no
-            // travel: the next one contains it.
+            // On the axes of the force. The travel of the hand itself, before scaling. A missing sample loses no
+            // travel, because the next one contains it.
             hand_m: self.samples.recent(now_s).map(|seen| mapping.world_from_leader() * seen.hand.position_m),
             hand_age_s: now_s - seen.hand_s(now_s),
             permitted,
@@ -262,8 +261,8 @@ impl<L: Link> Pair<L> {
         Felt { rendered_n, gates, gripper_n }
     }
 
-    /// Compares what each mode renders with the force of now, where that is known: if the follower's half is at another machine, that one
-    /// judges.
+    /// Compares the force of each mode with the current force, if known: if the follower's half is at another machine,
+    /// that machine evaluates the modes.
     fn judge_modes(&mut self, came: bool, rendered: &Rendered) {
         let force = &self.follower.force;
         if came && force.source.is_known() && self.link.far().is_none() {
@@ -309,7 +308,7 @@ impl<L: Link> Pair<L> {
             measured_n: force.measured_n(),
             force,
             wrist: recent.and_then(|seen| seen.sensed.wrist()).copied(),
-            // A pose that is not new would look as if it were held still.
+            // A repeated pose would look as if it were held still.
             frames: if self.samples.came { seen.frames } else { FrameSample::default() },
             view: seen.view,
             prompt: self.screen.prompt,
@@ -328,7 +327,7 @@ impl<L: Link> Pair<L> {
         }
     }
 
-    /// Over a network a gap is no fault until it has lasted for [`LINK_SILENT_AFTER_S`], but its force is not that of now.
+    /// Over a network a gap is a fault only after [`LINK_SILENT_AFTER_S`], but its force is not the current one.
     fn force_now(&self, seen: &Inputs) -> ForceReport {
         if seen.silent_s > SILENT_AFTER_S { NO_FORCE } else { self.follower.force }
     }

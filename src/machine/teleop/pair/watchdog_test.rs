@@ -1,7 +1,8 @@
-//! Fires a watchdog on purpose: what it watches over is withheld, in idle only, until it raises its fault by its usual way.
+//! Tests a watchdog: its input is suppressed, in idle only, until it raises its fault in the usual way.
 //!
-//! Nothing else changes: the state stays idle until the fault is there, so drives are off and the force is zero before, while and
-//! after. The fault is latched as any other one. A watchdog that does not bite within [`TEST_MAX_S`] has failed, and the loop goes on.
+//! Nothing else changes: the state stays idle until the fault is raised, so drives are off and the force is zero
+//! before, during and after the test. The fault is latched like any other fault. A watchdog that does not trip within
+//! [`TEST_MAX_S`] has failed, and the loop continues.
 
 use super::Pair;
 use crate::{
@@ -9,10 +10,9 @@ use crate::{
     teleop::Link,
 };
 
-/// Longest time for which something is withheld, s: the longest delay of the link, and half a second.
+/// Maximum time for which an input is suppressed, s: the longest delay of the link, and half a second.
 const TEST_MAX_S: f64 = nima_core::impedance::MAX_DELAY_S + 0.5;
 
-/// A test that is going on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WatchdogTest {
     watchdog: Watchdog,
@@ -28,18 +28,17 @@ impl<L: Link> Pair<L> {
         Ok(())
     }
 
-    /// Ends a test whose watchdog has not bitten.
+    /// Ends a test whose watchdog has not tripped.
     pub(super) fn end_late_test(&mut self, now_s: f64) {
-        // A time that is not a number ends it too.
+        // A NaN time ends it too.
         self.watchdog_test = self.watchdog_test.filter(|test| now_s <= test.until_s);
     }
 
-    /// Whether what this watchdog watches over is withheld.
+    /// Returns whether the input of this watchdog is suppressed.
     pub(in crate::teleop) fn withholds(&self, watchdog: Watchdog) -> bool {
         self.watchdog_test.is_some_and(|test| test.watchdog == watchdog)
     }
 
-    /// Whether this fault is the one that is wanted.
     pub(super) fn is_tested(&self, fault: Fault) -> bool {
         self.watchdog_test.is_some_and(|test| test.watchdog.raises(fault))
     }

@@ -15,10 +15,10 @@ pub(super) struct Chunk {
     pub(super) times_ns: (u64, u64),
 }
 
-/// A byte of LZ4 stands for so many at most: what claims more is not believed.
+/// An LZ4 byte expands to at most this many bytes; a chunk that claims more is rejected.
 const MOST_FOR_A_BYTE: u64 = 255;
 
-/// The chunk at this place; or what is wrong with it.
+/// Reads the chunk at this position, or returns what is wrong with it.
 pub(super) fn read(source: &Source, at: u64, length: u64) -> io::Result<Result<Chunk, String>> {
     let bytes = match source.read(at, length) {
         Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(Err("it is beyond the file".into())),
@@ -49,7 +49,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     if head.uncompressed > most {
         return Err("it claims to be longer than it can be".into());
     }
-    // What it claims is believed as far as it is likely.
+    // Allocates at first only for a likely compression ratio, whatever the chunk claims.
     let likely = head.uncompressed.min(8 * compressed.len() as u64);
     let mut records = Vec::with_capacity(likely as usize);
     if head.compression.is_empty() {
@@ -66,7 +66,7 @@ fn decompress(head: &parse::ChunkHead, compressed: &[u8]) -> Result<Vec<u8>, Str
     }
 }
 
-/// Kind, content and place of each record; ends where the bytes are no record.
+/// Returns kind, content and position of each record; ends where the bytes are not a record.
 pub(super) fn records(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8], usize)> {
     let mut left = bytes;
     std::iter::from_fn(move || {

@@ -1,4 +1,4 @@
-//! What a session holds, from its summary or, where there is none, from its records one after the other.
+//! Contents of a session, from its summary or, without a summary, from its records one after the other.
 
 use std::{collections::BTreeMap, io};
 
@@ -9,14 +9,14 @@ use super::{
 };
 use crate::session::format::{END, HEAD, MAGIC, Statistics, kind};
 
-/// Where messages stand: a chunk, or a row of messages outside of one, as others write them.
+/// Position of messages: a chunk, or a run of messages outside chunks, as other programs write them.
 #[derive(Clone, Debug)]
 pub(super) struct Messages {
     pub(super) is_chunk: bool,
     pub(super) at: u64,
     pub(super) length: u64,
     pub(super) times_ns: (u64, u64),
-    /// Whose messages; empty where that is not known.
+    /// Channels of the messages; empty if unknown.
     pub(super) channels: Vec<u16>,
 }
 
@@ -26,20 +26,20 @@ pub(super) struct Contents {
     pub(super) channels: BTreeMap<u16, RawChannel>,
     pub(super) messages: Vec<Messages>,
     pub(super) attachments: Vec<Attachment>,
-    /// Where they stand, and their lengths.
+    /// Positions and lengths of the records of metadata.
     pub(super) metadata: Vec<(u64, u64)>,
     pub(super) statistics: Statistics,
-    /// What is wrong with the file, one line each.
+    /// Faults of the file, one line each.
     pub(super) notes: Vec<String>,
 }
 
-/// So many lines about one file, and no more.
+/// Maximum number of notes about one file.
 const NOTES: usize = 20;
-/// Rows of messages outside of chunks are read in parts of this size.
+/// Runs of messages outside chunks are read in parts of this size.
 const ROW: u64 = 4 << 20;
 
 impl Contents {
-    /// From the summary; or why not.
+    /// Reads the summary, or returns why this is impossible.
     pub(super) fn of_summary(source: &Source) -> io::Result<Result<Self, &'static str>> {
         let Some(end) = source.size().checked_sub(END as u64) else { return Ok(Err("it is cut short")) };
         let last = source.read(end, END as u64)?;
@@ -62,7 +62,7 @@ impl Contents {
         while let Some(place) = walk.step()? {
             match place.kind {
                 kind::FOOTER => break,
-                // What was never written is zero: the power failed.
+                // Bytes that were never written are zero: the power failed.
                 0 => return Ok(Err("its summary is damaged")),
                 _ => {}
             }
@@ -79,7 +79,7 @@ impl Contents {
         }
         let none = contents.messages.is_empty();
         match told {
-            // Messages outside of chunks are in no index.
+            // Messages outside chunks are in no index.
             Some(told) if told.messages == 0 || !none => contents.statistics = told,
             None if !none => {}
             _ => return Ok(Err("its summary has no index")),
@@ -107,7 +107,8 @@ impl Contents {
         })
     }
 
-    /// Chunks are open at once while their times overlap: one that is named a thousand times would take a thousand times its memory.
+    /// Chunks whose times overlap are open at once: a chunk that is listed a thousand times would need a thousand times
+    /// its memory.
     fn has_overlaps(&mut self) -> bool {
         self.messages.sort_by_key(|one| one.at);
         self.messages.windows(2).any(|pair| pair[0].at.saturating_add(pair[0].length) > pair[1].at)
@@ -124,7 +125,7 @@ impl Contents {
         Some(())
     }
 
-    /// From the records, beginning at `begin`.
+    /// Scans the records, beginning at `begin`.
     pub(super) fn of_records(source: &Source, begin: u64) -> io::Result<Self> {
         let mut contents = Self::default();
         let mut walk = Walk::new(source, begin, source.size());
@@ -132,14 +133,14 @@ impl Contents {
             let at = walk.at;
             let Some(place) = walk.step()? else {
                 if at < source.size() {
-                    contents.note(|| format!("it ends within the record at byte {at}; what stands before is read"));
+                    contents.note(|| format!("it ends within the record at byte {at}; everything before it is read"));
                 }
                 break;
             };
             match place.kind {
                 kind::DATA_END | kind::FOOTER => break,
                 0 | kind::HEADER => {
-                    contents.note(|| format!("there is no record at byte {at}; what stands before is read"));
+                    contents.note(|| format!("no record at byte {at}; everything before it is read"));
                     break;
                 }
                 kind::CHUNK => contents.scan_chunk(source, place)?,
@@ -206,7 +207,7 @@ impl Contents {
         }
     }
 
-    /// Statistics of what has been scanned.
+    /// Computes the statistics of the scanned records.
     fn count(&mut self) {
         let times = self.messages.iter().map(|one| one.times_ns);
         let times_ns = times.reduce(|all, one| (all.0.min(one.0), all.1.max(one.1))).unwrap_or_default();
@@ -230,7 +231,7 @@ impl Contents {
     }
 }
 
-/// Of the summary and the footer up to the checksum.
+/// Covers the summary and the footer up to the checksum.
 fn checksum_agrees(source: &Source, begin: u64, end: u64, crc: u32) -> io::Result<bool> {
     let length = (end + HEAD as u64 + 16).checked_sub(begin);
     Ok(match length {

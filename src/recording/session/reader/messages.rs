@@ -13,7 +13,7 @@ use super::{
 };
 use crate::session::{ReadError, format::kind, writer::ChannelId};
 
-/// One message; its data is shared with the others of its chunk.
+/// One message, which shares its data with the other messages of its chunk.
 #[derive(Clone)]
 pub struct Message {
     head: MessageHead,
@@ -22,12 +22,11 @@ pub struct Message {
 }
 
 impl Message {
-    /// Whose it is.
     pub fn channel(&self) -> ChannelId {
         ChannelId(self.head.channel)
     }
 
-    /// Its number in its channel, from 0.
+    /// From 0, within its channel.
     pub fn sequence(&self) -> u32 {
         self.head.sequence
     }
@@ -37,31 +36,32 @@ impl Message {
         self.head.log_time_ns
     }
 
-    /// Time when it was published, ns: the same in our files.
+    /// Time of its publication, ns: the same in our files.
     pub fn publish_time_ns(&self) -> u64 {
         self.head.publish_time_ns
     }
 
-    /// As its channel's encoding says.
+    /// Encoded as its channel says.
     pub fn data(&self) -> &[u8] {
         &self.records[self.data.clone()]
     }
 }
 
-/// The messages that were asked for, in the order of their times; after a damaged chunk, which gives one error, those behind it.
+/// The requested messages in the order of their times. A damaged chunk gives one error, then the messages after it
+/// follow.
 pub struct Messages<'a> {
     reader: &'a Reader,
-    /// None for all.
+    /// `None` for all channels.
     wanted: Option<BTreeSet<u16>>,
     times_ns: Range<u64>,
-    /// By their beginnings.
+    /// In the order of their first times.
     places: Vec<&'a contents::Messages>,
     next_place: usize,
-    /// Messages of chunks that are open.
+    /// Messages of the chunks that are open.
     open: BinaryHeap<Reverse<InOrder>>,
 }
 
-/// Time, place of the chunk, place in it.
+/// Time, position of the chunk, position in it.
 struct InOrder((u64, u64, usize), Message);
 
 impl PartialEq for InOrder {

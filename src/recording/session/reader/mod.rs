@@ -1,4 +1,4 @@
-//! Reading a session, ours or somebody else's.
+//! Reads a session, written by this or another program.
 //!
 //! Not with the indexed reader of the crate `mcap` (0.26), which checks no checksum of a chunk and believes the length that it claims: of 17 112 bits of
 //! a chunk, flipped one by one, 15 704 went unnoticed, 1355 made it panic, and 53 ended the reading.
@@ -28,9 +28,9 @@ use super::{
     writer::{ChannelId, Encoding},
 };
 
-/// An open session. Reads where it is asked to; keeps the index and, while messages are read, the chunks that these are in.
+/// An open session. Reads on demand; keeps the index and, while messages are read, their chunks.
 ///
-/// Never takes more memory than the file can stand for, whatever its bytes say.
+/// Never uses more memory than a file of its size can justify, whatever its bytes claim.
 ///
 /// ```
 /// use nima_recording::session::{Encoding, Reader, Writer};
@@ -59,37 +59,35 @@ pub struct Reader {
     channels: Vec<Channel>,
 }
 
-/// A record of metadata: its name and its values.
+/// A metadata record: its name and its values.
 pub type Metadata = (String, BTreeMap<String, String>);
 
-/// A channel of a session that is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// Its number.
     pub id: ChannelId,
-    /// Its topic.
     pub topic: String,
-    /// How its messages are to be understood.
+    /// Encoding of its messages.
     pub encoding: Encoding,
-    /// How many there are, where the file says so.
+    /// `None` if the file does not state it.
     pub messages: Option<u64>,
 }
 
 impl Reader {
-    /// Opens a file and reads its summary. Without a sound summary all records are looked at, which takes as long as reading the
-    /// file; [`Reader::notes`] says so.
+    /// Opens a file and reads its summary. If the summary is missing or damaged, scans all records, which takes as long
+    /// as reading the file; [`Reader::notes`] then says so.
     ///
     /// # Errors
-    /// No file, an empty one, another format, a version that is not known, damage before the first record.
+    /// The file does not exist, is empty, has another format or an unknown version, or is damaged before the first
+    /// record.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let (file, size) = nima_files::open_file(path).map_err(|error| ReadError::open(path, &error))?;
         Self::of_source(path, Source::File(file, size))
     }
 
-    /// The same of bytes in memory; `name` stands for the path in messages.
+    /// Opens bytes in memory; `name` replaces the path in messages.
     ///
     /// # Errors
-    /// Those of [`Reader::open`].
+    /// As [`Reader::open`].
     pub fn of_bytes(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
         Self::of_source(Path::new(name), Source::Bytes(bytes))
     }
@@ -113,7 +111,7 @@ impl Reader {
             Ok(contents) => contents,
             Err(why) => {
                 let mut contents = Contents::of_records(&source, walk.at).map_err(failed)?;
-                contents.notes.insert(0, format!("{why}: all its records were looked at instead"));
+                contents.notes.insert(0, format!("{why}: scanned all records instead"));
                 contents
             }
         };
@@ -121,34 +119,33 @@ impl Reader {
         Ok(Self { path: path.to_owned(), source, library, contents, channels })
     }
 
-    /// The program that wrote it.
     pub fn library(&self) -> &str {
         &self.library
     }
 
-    /// What is wrong with the file, one line each; nothing with a sound one.
+    /// Returns the faults of the file, one line each; empty for a sound file.
     pub fn notes(&self) -> &[String] {
         &self.contents.notes
     }
 
-    /// All channels, by their numbers.
+    /// Sorted by number.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
     }
 
-    /// What it holds, as the file says or as it was found.
+    /// Returns the contents in numbers, from the file's summary or from a scan.
     pub fn statistics(&self) -> &Statistics {
         &self.contents.statistics
     }
 
-    /// Times of the first and the last message, ns.
+    /// Returns the times of the first and the last message, ns.
     pub fn times_ns(&self) -> Option<(u64, u64)> {
         let times = self.contents.messages.iter().map(|one| one.times_ns);
         times.reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
     }
 
-    /// The messages of these topics (of all where there is none) with times in this range, in the order of their times. Only the
-    /// chunks that may hold some are read.
+    /// Returns the messages of these topics (of all topics if the list is empty) with times in this range, in the order
+    /// of their times. Reads only the chunks that may contain some.
     pub fn messages(&self, topics: &[&str], times_ns: Range<u64>) -> Messages<'_> {
         let wanted = (!topics.is_empty()).then(|| {
             let channels = self.channels.iter().filter(|channel| topics.contains(&channel.topic.as_str()));
@@ -157,15 +154,15 @@ impl Reader {
         Messages::new(self, wanted, times_ns)
     }
 
-    /// All attachments, without their data.
+    /// Returns all attachments without their data.
     pub fn attachments(&self) -> &[Attachment] {
         &self.contents.attachments
     }
 
-    /// The data of an attachment.
+    /// Returns the data of an attachment.
     ///
     /// # Errors
-    /// What the system says; a record that is not one, or a checksum that does not agree.
+    /// I/O errors, bytes that are not such a record, or a wrong checksum.
     pub fn attachment(&self, attachment: &Attachment) -> Result<Vec<u8>, ReadError> {
         let (at, length) = attachment.place;
         let damaged =
@@ -178,10 +175,8 @@ impl Reader {
         }
     }
 
-    /// All metadata.
-    ///
     /// # Errors
-    /// What the system says; a record that is not one.
+    /// I/O errors, or bytes that are not such a record.
     pub fn metadata(&self) -> Result<Vec<Metadata>, ReadError> {
         let read = |&(at, length): &(u64, u64)| {
             let damaged = || ReadError::damaged(&self.path, at, "metadata");
@@ -197,7 +192,7 @@ impl Reader {
         self.contents.messages.iter().map(|one| (one.at, one.length))
     }
 
-    /// The records of one chunk, or of a row of messages outside of one.
+    /// Reads the records of one chunk, or of a run of messages outside chunks.
     fn records(&self, place: &contents::Messages) -> Result<Vec<u8>, ReadError> {
         let failed = |error: io::Error| ReadError::open(&self.path, &error);
         if !place.is_chunk {

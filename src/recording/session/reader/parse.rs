@@ -1,10 +1,10 @@
-//! The fields of records, taken from bytes that may be anything.
+//! Parses the fields of records from untrusted bytes.
 
 use std::collections::BTreeMap;
 
 use crate::session::format::{HEAD, Statistics};
 
-/// What is left of a record.
+/// The unread part of a record.
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 
 impl<'a> Fields<'a> {
@@ -44,7 +44,7 @@ impl<'a> Fields<'a> {
         self.bytes().and_then(|bytes| str::from_utf8(bytes).ok()).map(str::to_owned)
     }
 
-    /// A map, as what `entry` makes of each of its entries.
+    /// Parses a map; `entry` parses one of its entries.
     fn map<T>(&mut self, entry: impl Fn(&mut Self) -> Option<T>) -> Option<Vec<T>> {
         let mut inside = Self(self.bytes()?);
         let mut entries = Vec::new();
@@ -59,7 +59,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The first record of `bytes`: kind, content, and what follows.
+/// Splits off the first record of `bytes`: kind, content, and the remaining bytes.
 pub(super) fn first_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (kind, length) = head(bytes)?;
     let (content, behind) = bytes.get(HEAD..)?.split_at_checked(usize::try_from(length).ok()?)?;
@@ -101,7 +101,7 @@ pub(super) fn channel(content: &[u8]) -> Option<RawChannel> {
     Some(RawChannel { id, schema, topic, encoding })
 }
 
-/// All of a message but its data.
+/// All of a message except its data.
 #[derive(Clone, Copy)]
 pub(super) struct MessageHead {
     pub(super) channel: u16,
@@ -110,7 +110,7 @@ pub(super) struct MessageHead {
     pub(super) publish_time_ns: u64,
 }
 
-/// Bytes of that.
+/// Size of a message head, bytes.
 pub(super) const MESSAGE_HEAD: usize = 2 + 4 + 8 + 8;
 
 pub(super) fn message(content: &[u8]) -> Option<MessageHead> {
@@ -120,7 +120,7 @@ pub(super) fn message(content: &[u8]) -> Option<MessageHead> {
     Some(MessageHead { channel, sequence, log_time_ns: fields.u64()?, publish_time_ns: fields.u64()? })
 }
 
-/// What stands before the records of a chunk.
+/// The fields before the records of a chunk.
 pub(super) struct ChunkHead {
     pub(super) times_ns: (u64, u64),
     pub(super) uncompressed: u64,
@@ -158,18 +158,17 @@ pub(super) fn chunk_index(content: &[u8]) -> Option<ChunkIndex> {
     Some(ChunkIndex { times_ns, at, length, channels })
 }
 
-/// An attachment without its data, as the summary and the record itself tell it.
+/// An attachment without its data, from the summary or from its own record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// Its name.
     pub name: String,
-    /// What its data is, such as `text/plain`.
+    /// Media type, such as `text/plain`.
     pub media_type: String,
-    /// When it was recorded, ns.
+    /// Time of its recording, ns.
     pub log_time_ns: u64,
     /// Bytes of its data.
     pub size: u64,
-    /// Where its record stands, and its length.
+    /// Position and length of its record.
     pub(super) place: (u64, u64),
 }
 
@@ -182,7 +181,7 @@ pub(super) fn attachment_index(content: &[u8]) -> Option<Attachment> {
     Some(Attachment { place, log_time_ns, size, name: fields.text()?, media_type: fields.text()? })
 }
 
-/// What stands before the data of an attachment of which `place` says where it stands; `size` is that of its data.
+/// Parses the fields before an attachment's data; `place` is the position of the record, `size` the size of the data.
 pub(super) fn attachment_head(content: &[u8], place: (u64, u64)) -> Option<Attachment> {
     let mut fields = Fields(content);
     let log_time_ns = fields.u64()?;
@@ -190,7 +189,7 @@ pub(super) fn attachment_head(content: &[u8], place: (u64, u64)) -> Option<Attac
     Some(Attachment { place, log_time_ns, name: fields.text()?, media_type: fields.text()?, size: fields.u64()? })
 }
 
-/// Its data, and whether the checksum agrees.
+/// Returns its data, and whether the checksum is correct.
 pub(super) fn attachment_data(content: &[u8]) -> Option<(&[u8], bool)> {
     let (checked, mut crc) =
         content.split_at_checked(content.len().checked_sub(4)?).map(|(all, crc)| (all, Fields(crc)))?;
@@ -203,7 +202,7 @@ pub(super) fn attachment_data(content: &[u8]) -> Option<(&[u8], bool)> {
     Some((data, crc == 0 || crc == crc32fast::hash(checked)))
 }
 
-/// Where a record of metadata stands, and its length.
+/// Returns the position and length of a metadata record.
 pub(super) fn metadata_index(content: &[u8]) -> Option<(u64, u64)> {
     let mut fields = Fields(content);
     Some((fields.u64()?, fields.u64()?))

@@ -21,7 +21,7 @@ impl Source {
         }
     }
 
-    /// These bytes; never more memory than the file is long.
+    /// Reads these bytes; never allocates more than the length of the file.
     pub(in crate::session) fn read(&self, from: u64, length: u64) -> io::Result<Vec<u8>> {
         let end = from.checked_add(length).filter(|&end| end <= self.size()).ok_or(ErrorKind::UnexpectedEof)?;
         match self {
@@ -35,22 +35,21 @@ impl Source {
     }
 }
 
-/// Walks over records and reads only what is asked for, in windows.
+/// Walks over records in windows and reads only the requested bytes.
 pub(in crate::session) struct Walk<'a> {
     source: &'a Source,
-    /// Where the next record stands.
+    /// Position of the next record.
     pub(in crate::session) at: u64,
     end: u64,
     window: Vec<u8>,
     window_at: u64,
 }
 
-/// One record in its place.
 #[derive(Clone, Copy)]
 pub(in crate::session) struct Place {
     pub(in crate::session) kind: u8,
     pub(in crate::session) at: u64,
-    /// With its head.
+    /// Includes the record's head.
     pub(in crate::session) length: u64,
 }
 
@@ -61,7 +60,7 @@ impl<'a> Walk<'a> {
         Self { source, at, end: end.min(source.size()), window: Vec::new(), window_at: 0 }
     }
 
-    /// The next record, whole or not; `None` at the end, and where the rest is no whole record.
+    /// Returns the next record, complete or not; `None` at the end, and if the rest is too short for a record.
     pub(in crate::session) fn step(&mut self) -> io::Result<Option<Place>> {
         if self.end.saturating_sub(self.at) < HEAD as u64 {
             return Ok(None);
@@ -75,7 +74,7 @@ impl<'a> Walk<'a> {
         Ok(Some(Place { kind, at, length }))
     }
 
-    /// The content of a record, or the first `most` bytes of it.
+    /// Returns the content of a record, or its first `most` bytes.
     pub(in crate::session) fn content(&mut self, place: Place, most: u64) -> io::Result<&[u8]> {
         self.bytes(place.at + HEAD as u64, (place.length - HEAD as u64).min(most))
     }

@@ -1,10 +1,10 @@
-//! Files that are cut, damaged, foreign or made up.
+//! Files that are cut, damaged, of another format or invented.
 
 use std::fs;
 
 use super::*;
 
-/// A small finished session with everything in it.
+/// A small finished session with every kind of record.
 fn small() -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
@@ -21,7 +21,7 @@ fn small() -> Vec<u8> {
     fs::read(path).unwrap()
 }
 
-/// The same without chunks, summary and index, as others write it.
+/// The same without chunks, summary and index, as other programs write it.
 fn of_others() -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let options = mcap::WriteOptions::new().compression(None).use_chunks(false).emit_summary_records(false);
@@ -44,12 +44,12 @@ fn what_is_no_session_gets_one_clear_line() {
     let mut newer = whole.clone();
     newer[5] = b'1';
     let cases: [(&[u8], &str); 6] = [
-        (b"", "session x.mcap is empty: nothing was recorded in it"),
+        (b"", "session x.mcap is empty: nothing was recorded"),
         (&whole[..5], "ends within its first bytes"),
         (&whole[..20], "damaged at byte 8: there is no header"),
         (b"t_s,x_m\n0.0,0.1\n", "x.mcap is not a session"),
         (b"\x89PNG\r\n\x1a\n", "x.mcap is not a session"),
-        (&newer, "version 1 of the format MCAP, only version 0 is read"),
+        (&newer, "version 1 of the MCAP format, but only version 0 can be read"),
     ];
     for (bytes, words) in cases {
         let line = read(bytes).expect(words);
@@ -73,11 +73,7 @@ fn a_file_that_is_cut_anywhere_is_read_up_to_there() {
     for length in 60..whole.len() {
         let reader = Reader::of_bytes("cut", whole[..length].to_vec()).unwrap();
         let read = ours(&reader);
-        assert!(
-            reader.notes()[0].starts_with("it is cut short: all its records were looked at"),
-            "{:?}",
-            reader.notes()
-        );
+        assert!(reader.notes()[0].starts_with("it is cut short: scanned all records"), "{:?}", reader.notes());
         assert!(read[..] == all[..read.len()] && read.len() >= most, "cut at {length}");
         most = read.len();
     }
@@ -87,7 +83,7 @@ fn a_file_that_is_cut_anywhere_is_read_up_to_there() {
 #[test]
 fn a_file_of_others_without_chunks_and_summary_is_read() {
     let reader = Reader::of_bytes("others", of_others()).unwrap();
-    assert_eq!(reader.notes(), ["it has no summary: all its records were looked at instead"]);
+    assert_eq!(reader.notes(), ["it has no summary: scanned all records instead"]);
     let read = ours(&reader);
     assert_eq!(read.len(), 10);
     assert_eq!(read[7], ("a".to_owned(), 7, b"word".to_vec()));
@@ -114,7 +110,7 @@ fn every_flipped_bit_of_a_chunk_is_found_and_the_rest_is_read() {
                 assert!(read.len() >= 25, "the other chunks are read");
                 named += 1;
             } else {
-                // The frame's own marks say nothing about the messages.
+                // Marks of the LZ4 frame do not affect the messages.
                 assert!(errors.is_empty() && ours(&reader) == all, "byte {} of the chunk at {at}", byte - at);
             }
         }
@@ -147,7 +143,7 @@ fn what_claims_to_be_huge_takes_no_memory() {
     let (at, _) = reader.chunk_places().next().unwrap();
     for claimed in [u64::MAX, 1 << 40, 100_000] {
         let mut bytes = whole.clone();
-        // The length before compression stands behind the two times.
+        // The uncompressed length follows the two times.
         bytes[at as usize + 9 + 16..][..8].copy_from_slice(&claimed.to_le_bytes());
         let reader = Reader::of_bytes("huge", bytes).unwrap();
         let error = reader.messages(&[], 0..u64::MAX).find_map(Result::err).unwrap().to_string();
@@ -158,7 +154,7 @@ fn what_claims_to_be_huge_takes_no_memory() {
 #[test]
 fn a_chunk_that_is_named_twice_is_read_once() {
     let whole = small();
-    // The index of the first chunk in the place of the second one.
+    // The index of the first chunk instead of that of the second.
     let mut indexes = Vec::new();
     let mut at = 8;
     while let Some((head, _)) = whole[at..].split_first_chunk::<9>() {
@@ -181,7 +177,7 @@ fn a_chunk_that_is_named_twice_is_read_once() {
     assert_eq!(ours(&reader).len(), 30);
 }
 
-/// Everything that can be asked of a file.
+/// Calls everything that a reader offers.
 fn ask(bytes: Vec<u8>) -> usize {
     let size = bytes.len() as u64;
     let Ok(reader) = Reader::of_bytes("mutated", bytes) else { return 0 };
@@ -203,7 +199,7 @@ fn mutated(original: &[u8], random: &mut fastrand::Rng) -> Vec<u8> {
             0 => bytes.truncate(at.max(1)),
             1 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][random.usize(..5)],
             2 => bytes[at] ^= 1 << random.u8(..8),
-            // A length or a place.
+            // A length or a position.
             3 => {
                 let value =
                     if random.bool() { random.u64(..2 * original.len() as u64) } else { u64::MAX - random.u64(..64) };
@@ -231,7 +227,7 @@ fn fuzz(rounds: u64, seed: u64) {
     let mut random = fastrand::Rng::with_seed(seed);
     let originals = [small(), of_others()];
     let read: usize = (0..rounds).map(|round| ask(mutated(&originals[round as usize % 2], &mut random))).sum();
-    assert!(read > rounds as usize, "most mutated files still give something: {read} of {rounds}");
+    assert!(read > rounds as usize, "too few mutated files are readable: {read} of {rounds}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is written is read again, by us and by the crate `mcap`; disks that refuse.
+//! What is written can be read back, by our reader and by the crate `mcap`; disks that refuse writes.
 
 use std::fs;
 
@@ -16,7 +16,7 @@ fn everything_written_is_read_by_us_and_by_others_before_and_after_the_end() {
     writer.attachment("rig.toml", "text/plain", 5, b"mode = \"best\"").unwrap();
     let mut expected = Vec::new();
     for tick in 0..5_000_u64 {
-        // Noise in the middle, so that blocks do not shrink too.
+        // Noise in the middle keeps the blocks from compressing too well.
         let data = format!("{{\"force_n\": {}}}", tick.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11);
         for (channel, topic) in [(forces, "forces"), (poses, "poses")] {
             writer.message(channel, tick * 1_000_000, data.as_bytes()).unwrap();
@@ -110,7 +110,7 @@ fn an_index_that_another_program_has_changed_is_not_lost_in_silence() {
     for chunk in 0..5 {
         writer.message(channel, chunk * 500_000_000, b"a").unwrap();
     }
-    // All of the summary, to which the footer leads.
+    // The whole summary, to which the footer points.
     let bytes = fs::read(&path).unwrap();
     let footer = bytes.len() - 28;
     let begin = u64::from_le_bytes(bytes[footer..footer + 8].try_into().unwrap()) as usize;
@@ -137,7 +137,7 @@ fn who_writes_is_seen_and_who_reads_is_not() {
     let reader = fs::File::open(&path).unwrap();
     assert!(is_being_written(&path).unwrap() && is_being_written(&path).unwrap());
     writer.finish().unwrap();
-    // A program that another test starts holds a lock too until it is loaded.
+    // A program that another test starts inherits the lock until it is loaded.
     let free = (0..500).any(|_| {
         std::thread::sleep(std::time::Duration::from_millis(10));
         !is_being_written(&path).unwrap()
@@ -159,7 +159,10 @@ fn what_cannot_be_created_or_goes_away_is_told_in_one_line() {
     let channel = writer.channel("a", plain_text()).unwrap();
     writer.message(channel, 0, b"a").unwrap();
     let foreign = writer.message(ChannelId(1), 0, b"a").unwrap_err().to_string();
-    assert!(foreign.ends_with("session.mcap has no channel 1: it is a channel of another file"), "{foreign}");
+    assert!(
+        foreign.ends_with("session.mcap has no channel 1: the channel belongs to another file; use one of this file"),
+        "{foreign}"
+    );
     if cfg!(windows) {
         fs::remove_file(&path).unwrap_err();
         writer.flush().unwrap();

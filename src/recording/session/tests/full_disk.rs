@@ -1,4 +1,4 @@
-//! A disk that is full: a limit of the process, which cuts writes short, and a real file system.
+//! A full disk: a process limit that cuts writes short, and a real file system.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -11,13 +11,13 @@ use nima_testing::unjudged;
 
 use super::*;
 
-/// Names the file of the process that fills the disk.
+/// Environment variable with the file of the process that fills the disk.
 const FILE: &str = "NIMA_TEST_SMALL_DISK";
 /// Bytes of a message, 25 of them in half a second.
 const MESSAGE: usize = 50_000;
 
 #[test]
-#[ignore = "run by the tests below in a process of its own"]
+#[ignore = "run by the tests below in its own process"]
 fn of_a_process_with_a_small_disk() {
     let Ok(path) = std::env::var(FILE) else { return };
     let mut writer = match Writer::create(path.as_ref(), "") {
@@ -36,12 +36,12 @@ fn of_a_process_with_a_small_disk() {
     };
     println!("taken {taken}: {error}");
     let again = writer.flush().unwrap_err();
-    assert_eq!(again.kind(), error.kind(), "it goes on failing");
+    assert_eq!(again.kind(), error.kind(), "it keeps failing");
     let ended = writer.finish().unwrap_err();
     assert_eq!(ended.kind(), error.kind());
 }
 
-/// Runs that in a shell: `$0` is the program, `$@` its arguments.
+/// Runs this program in a shell: `$0` is the program, `$@` its arguments.
 fn filled(script: &str, path: &Path) -> Output {
     let name = format!("{}::of_a_process_with_a_small_disk", module_path!().split_once("::").unwrap().1);
     Command::new("bash")
@@ -58,9 +58,9 @@ fn text(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// What was taken is in the file but for half a second.
+/// All accepted messages are in the file, except the last half second.
 fn check(told: &str, path: &Path) {
-    assert!(told.contains("what was written before stays readable"), "{told}");
+    assert!(told.contains("the part already written stays readable"), "{told}");
     let taken: usize = told.split("taken ").nth(1).unwrap().split(':').next().unwrap().parse().unwrap();
     let read = ours(&Reader::open(path).unwrap());
     println!("{taken} taken, {} read", read.len());
@@ -72,7 +72,7 @@ fn check(told: &str, path: &Path) {
 #[test]
 fn a_file_that_may_not_grow_stays_readable() {
     let folder = tempfile::tempdir().unwrap();
-    // The limit of the shell is in KiB; the signal that comes with it is ignored.
+    // The shell's limit is in KiB; the signal that accompanies it is ignored.
     let run =
         |kib: u32, path: &Path| text(&filled(&format!("trap '' XFSZ; ulimit -f {kib}; exec \"$0\" \"$@\""), path));
     assert!(run(10_000, &folder.path().join("none.mcap")).contains("cannot create session"));
@@ -89,7 +89,7 @@ fn a_file_on_a_full_disk_stays_readable() {
     let path = folder.path().join("disk/session.mcap");
     let kept = folder.path().join("kept.mcap");
     for kib in [9_000, 17_001, 30_000, 30_002] {
-        // A file system of this size that nobody else sees, for as long as the shell runs.
+        // A private file system of this size, which exists while the shell runs.
         let disk = path.parent().unwrap();
         let copy = kept.display();
         fs::create_dir_all(disk).unwrap();

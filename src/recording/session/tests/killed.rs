@@ -1,4 +1,4 @@
-//! A process that writes is killed at random moments.
+//! Kills a writing process at random moments.
 #![cfg(unix)]
 
 use std::{
@@ -11,16 +11,15 @@ use std::{
 
 use super::*;
 
-/// Names the folder of the process that is killed.
+/// Environment variable with the folder of the process that is killed.
 const FOLDER: &str = "NIMA_TEST_SESSION_FOLDER";
 const CHANNELS: u64 = 8;
-/// Time between two messages of a channel, ns.
 const TICK_NS: u64 = 1_000_000;
-/// At most so much may be lost, ns.
+/// Maximum loss, ns.
 const LOST_NS: u64 = 600_000_000;
 
-/// Writes as fast as it can, a tick of a millisecond after the other, and says in a file beside it how far it is. In 40 ms it
-/// writes what a rig does in seconds, so that a kill often meets a write.
+/// Writes ticks of a millisecond as fast as it can and reports its progress in a second file. It writes in 40 ms what a
+/// rig writes in seconds, so that a kill often hits a write.
 #[test]
 #[ignore = "run by the other tests, which kill it"]
 fn the_writer_of_another_process() {
@@ -56,11 +55,11 @@ impl Drop for Running {
     }
 }
 
-/// What one kill left.
+/// State after one kill.
 struct Left {
     lost_ns: u64,
     recorded_ns: u64,
-    /// Who begins at the beginning finds a whole end before the end of the file: between two writes of a growth.
+    /// A sequential reader meets a complete end before the end of the file: killed between the two writes of a growth.
     early_end: bool,
     bytes: usize,
 }

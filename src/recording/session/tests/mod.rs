@@ -1,4 +1,4 @@
-//! Files as they come, as they break, and as others read them.
+//! Session files: intact, damaged, and read by other programs.
 
 mod bad_files;
 mod files;
@@ -12,12 +12,10 @@ use std::collections::BTreeMap;
 
 use super::*;
 
-/// Text messages.
 fn plain_text() -> Encoding {
     Encoding { message_encoding: "text".into(), ..Encoding::default() }
 }
 
-/// JSON messages with a schema.
 fn json(schema: &str) -> Encoding {
     let schema_data = br#"{"type": "object"}"#.to_vec();
     Encoding {
@@ -32,7 +30,7 @@ fn values() -> BTreeMap<String, String> {
     [("rig", "emulated"), ("scene", "foam")].map(|(key, value)| (key.to_owned(), value.to_owned())).into()
 }
 
-/// Everything that our reader gives, checked against what it says of itself.
+/// Returns everything that our reader returns, checked against its own statistics.
 fn ours(reader: &Reader) -> peer::Told {
     let told: Result<peer::Told, ReadError> = reader
         .messages(&[], 0..u64::MAX)

@@ -1,4 +1,4 @@
-//! The crate `mcap` as a reader of our files, without its C libraries: it is given our LZ4.
+//! The crate `mcap` as a reader of our files, without its C libraries: it uses our LZ4.
 
 use mcap::{
     McapResult,
@@ -12,7 +12,7 @@ use mcap::{
 /// Topic, time, data.
 pub(super) type Told = Vec<(String, u64, Vec<u8>)>;
 
-/// By its index.
+/// Reads by the index.
 pub(super) fn indexed(bytes: &[u8]) -> McapResult<Told> {
     let summary = Summary::read(bytes)?.expect("there is a summary");
     for index in &summary.attachment_indexes {
@@ -41,7 +41,7 @@ pub(super) fn indexed(bytes: &[u8]) -> McapResult<Told> {
     Ok(told)
 }
 
-/// From the beginning to the end, with every checksum.
+/// Reads sequentially and verifies every checksum.
 pub(super) fn linear(bytes: &[u8]) -> McapResult<Told> {
     let options = LinearReaderOptions::default()
         .with_validate_chunk_crcs(true)
@@ -55,7 +55,7 @@ pub(super) fn linear(bytes: &[u8]) -> McapResult<Told> {
         .collect()
 }
 
-/// Frames of LZ4 without content size and checksums of blocks, as we write them, block by block.
+/// Decodes LZ4 frames without content size and block checksums, as we write them, block by block.
 #[derive(Default)]
 struct Lz4 {
     taken: Vec<u8>,
@@ -67,7 +67,7 @@ struct Lz4 {
 const FRAME_HEAD: usize = 7;
 
 impl Lz4 {
-    /// How much more is needed for the next step.
+    /// Returns the number of bytes needed for the next step.
     fn wanted(&self) -> usize {
         if !self.begun {
             return FRAME_HEAD - self.taken.len();

@@ -1,4 +1,4 @@
-//! Pictures stand in chunks of their own, as they came.
+//! Images are stored unchanged in their own chunks.
 
 use std::{collections::BTreeMap, fs};
 
@@ -7,7 +7,7 @@ use prost::Message as _;
 use super::*;
 use crate::messages::foxglove::{CompressedImage, encoding};
 
-/// What a camera compressed: noise.
+/// Noise in the place of compressed image data.
 fn picture(number: u64) -> Vec<u8> {
     let mut random = fastrand::Rng::with_seed(number);
     let data = (0..20_000).map(|_| random.u8(..)).collect();
@@ -38,7 +38,7 @@ fn pictures_have_chunks_of_their_own_and_are_read_by_us_and_by_others() {
 
     let reader = Reader::open(&path).unwrap();
     assert_eq!(reader.notes(), [""; 0]);
-    // In the order of their times; of one time in any.
+    // Sorted by time; the order within equal times is arbitrary.
     let sorted = |mut told: peer::Told| {
         told.sort_by(|a, b| (a.1, &a.0).cmp(&(b.1, &b.0)));
         told
@@ -71,7 +71,7 @@ fn pictures_that_stop_are_not_left_in_memory() {
     for tick in 0..600_u64 {
         writer.message(numbers, tick * 1_000_000, b"{}").unwrap();
     }
-    // As a process that is killed leaves it.
+    // In the state in which a killed process leaves it.
     let reader = Reader::open(&path).unwrap();
     assert_eq!(reader.messages(&["pictures"], 0..u64::MAX).count(), 1);
 }

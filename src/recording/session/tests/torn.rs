@@ -1,4 +1,4 @@
-//! The process is stopped at every moment there is: between any two writes, and at every page within one.
+//! Stops the process at every possible moment: between any two writes, and at every page within a write.
 
 use std::cell::RefCell;
 
@@ -7,7 +7,7 @@ use super::*;
 const PAGE: usize = 4096;
 const CHUNKS: u64 = 80;
 
-/// What a stopped process leaves behind, made of its writes.
+/// The bytes that a stopped process leaves behind, built from its writes.
 struct Disk(Vec<u8>);
 
 impl Disk {
@@ -20,15 +20,15 @@ impl Disk {
     }
 }
 
-/// How a file is read at one moment.
+/// Results of reading at all moments.
 #[derive(Debug, Default)]
 struct Moments {
     all: usize,
-    /// Moments at which a reader that begins at the beginning comes to a whole end before the end of the file.
+    /// Number of moments at which a sequential reader meets a complete end before the end of the file.
     early_end: usize,
 }
 
-/// Writes of a session with everything that changes the file: chunks, channels, attachments, growth.
+/// The writes of a session with everything that changes the file: chunks, channels, attachments, growth.
 fn script() -> Vec<(u64, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("session.mcap");
@@ -51,7 +51,7 @@ fn script() -> Vec<(u64, Vec<u8>)> {
     writer.layout().log.clone()
 }
 
-/// The file is valid, holds at least these messages and at most one chunk more.
+/// Checks that the file is valid, and contains at least these messages and at most one chunk more.
 fn check(disk: &Disk, before: usize, moments: &RefCell<Moments>) -> usize {
     let reader = Reader::of_bytes("torn", disk.0.clone()).unwrap();
     assert_eq!(reader.notes(), [""; 0]);
@@ -77,10 +77,10 @@ fn a_file_is_valid_at_every_moment() {
     let mut disk = Disk(Vec::new());
     let mut read = 0;
     let log = script();
-    // The first writes make the file before it has its name.
+    // The first writes lay out the file before it has its name.
     let begin = log.iter().position(|(_, bytes)| bytes.ends_with(b"\x89MCAP0\r\n")).unwrap();
     for (number, (at, bytes)) in log.iter().enumerate() {
-        // Large writes of one kind are not all cut at every page.
+        // Large writes of one kind are cut at a selection of pages only.
         let pages = bytes.len() / PAGE;
         let cuts: Vec<usize> = match pages {
             0..6 => (1..=pages).collect(),
@@ -100,12 +100,11 @@ fn a_file_is_valid_at_every_moment() {
     assert_eq!(read, CHUNKS as usize);
     let Moments { all, early_end } = moments.into_inner();
     println!("{all} moments of {} writes; early end for who does not use the index: {early_end}", log.len());
-    // Between the new footer of a growth and the head of the room that leads to it.
+    // Between the write of a growth's new footer and that of the head that leads to it.
     assert!((2..=8).contains(&early_end), "{early_end} of {all}");
 }
 
-/// The power fails: of all pages that were written since the disk was waited for, each has any of its versions, and so has the
-/// length of the file.
+/// Power loss: every page written since the last sync has any of its versions, and so has the length of the file.
 fn without_power(log: &[(u64, Vec<u8>)], synced: usize, end: usize, random: &mut fastrand::Rng) -> Vec<u8> {
     let mut disk = Disk(Vec::new());
     for (at, bytes) in &log[..synced] {
@@ -119,7 +118,7 @@ fn without_power(log: &[(u64, Vec<u8>)], synced: usize, end: usize, random: &mut
         let mut bytes = &bytes[..];
         while !bytes.is_empty() {
             let (part, rest) = bytes.split_at(bytes.len().min(PAGE - at as usize % PAGE));
-            // Up to which write this page reached the disk.
+            // The last write whose version of this page reached the disk.
             let reached = *last_version.entry(at / PAGE as u64).or_insert_with(|| random.usize(..=end - synced));
             if number < reached {
                 versions.write(at, part);
@@ -143,7 +142,7 @@ fn after_a_power_failure_what_was_waited_for_is_read() {
     let mut scanned = 0;
     let mut missing = 0;
     for _ in 0..600 {
-        // A second has two chunks, which are eight writes and now and then some more.
+        // A second has two chunks: eight writes and occasionally some more.
         let synced = random.usize(begin..log.len() - 20);
         let end = synced + random.usize(1..20);
         let mut disk = Disk(Vec::new());

@@ -1,11 +1,11 @@
-//! FNV-1a (64 bit) over what is read.
+//! FNV-1a (64 bit) over the bytes read.
 
 use std::io;
 
 pub(super) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
 const FNV_PRIME: u64 = 0x0100_0000_01b3;
 
-/// A reader that also computes a hash of what is read.
+/// A reader that also hashes the bytes read.
 pub(super) struct Hashed<'a, R> {
     pub(super) from: R,
     pub(super) hash: &'a mut u64,

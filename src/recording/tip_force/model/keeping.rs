@@ -1,4 +1,4 @@
-//! The stored network of a sensor, bound to sensor and tool, and used only if its check allows this.
+//! The stored network of a sensor. It is bound to sensor and tool, and used only if its check allows this.
 
 use std::{fs, time::SystemTime};
 

@@ -1,4 +1,4 @@
-//! What touches the rings.
+//! Contacts of the rings.
 
 use nalgebra::Vector3;
 use nima_core::Side;
@@ -11,13 +11,13 @@ use crate::physics::{
     tool::{PARTS, SHAFT, Tool},
 };
 
-/// A ring that is hit faster than this is woken, m/s.
+/// An impact faster than this wakes a ring, m/s.
 const WAKES_M_S: f64 = 5e-3;
-/// How far below the surface of the board a ring is taken for one beside it, m.
+/// A ring this far below the surface of the board counts as next to the board, m.
 const BESIDE_M: f64 = 0.004;
 
 impl Objects {
-    /// The forces on all rings, and what the instruments feel of them.
+    /// Computes the forces on all rings, and the reactions on the instruments.
     pub(super) fn touch_rings(&mut self, step_s: f64) {
         for i in 0..self.rings.len() {
             if self.rings[i].lost {
@@ -121,7 +121,7 @@ impl Objects {
                 wake_both(a, b);
             }
         } else if pair.touched {
-            // What rested on the other must not stay in the air.
+            // A ring that rested on the other must not stay in the air.
             wake_both(a, b);
             *pair = RingPair::default();
         }
@@ -137,13 +137,13 @@ fn wake_both(a: &mut Ring, b: &mut Ring) {
     }
 }
 
-/// One place of a capsule on a ring; the normal points to the ring.
+/// One contact of a capsule with a ring; the normal points to the ring.
 struct Contact {
     at_m: Vector3<f64>,
     touch: Touch,
 }
 
-/// Lets `law` push the ring wherever it touches the capsule; whether it does.
+/// Applies `law` wherever the capsule touches the ring; returns whether it does.
 fn capsule_on_ring(
     ring: &mut Ring,
     segment: &Segment,
@@ -174,7 +174,7 @@ fn capsule_on_ring(
     true
 }
 
-/// One part of an instrument on a ring: what it presses, N towards the ring, if it touches.
+/// Contact of one part of an instrument with a ring: its pressure, N towards the ring, if it touches.
 fn tool_on_ring(
     ring: &mut Ring,
     tool: &mut Tool,
@@ -204,7 +204,7 @@ fn tool_on_ring(
     touched.then_some(pressed_n)
 }
 
-/// The places of a ring on the tube of another; whether any touches.
+/// Contacts of a ring with the tube of another; returns whether there are any.
 fn places_on_ring(a: &mut Ring, b: &mut Ring, pair: &mut RingPair, law: &Law, step_s: f64) -> bool {
     let reach_m = a.tube_radius_m + b.tube_radius_m;
     let mut touching = false;

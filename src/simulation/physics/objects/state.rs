@@ -1,4 +1,4 @@
-//! What each ring is doing.
+//! State of each ring.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_core::SIDES;
@@ -6,30 +6,30 @@ use nima_core::SIDES;
 use super::{Note, Objects};
 use crate::physics::{ring::Ring, setting::View};
 
-/// Both fingers press at least so much on a ring that is held, N: with a friction of 0.4 just enough for 2 g.
+/// Minimum pressure of both fingers on a ring that counts as held, N: with a friction of 0.4 just enough for 2 g.
 const HOLDS_N: f64 = 0.03;
-/// Out of the picture for so long without being held, a ring is lost, s.
+/// A ring that is out of view for this long without being held is lost, s.
 const LOST_AFTER_S: f64 = 0.1;
-/// Farther from the origin a ring is lost even if it is held, m.
+/// Beyond this distance from the origin a ring is lost even if it is held, m.
 const LOST_BEYOND_M: f64 = 1.5;
-/// A ring that stands more upright than this is on no peg: cosine of the angle between its axis and the vertical.
+/// A ring that is more upright than this is not on a peg: cosine of the angle between its axis and the vertical.
 const UPRIGHT: f64 = 0.2;
 
-/// What a ring is doing.
+/// State of a ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doing {
-    /// A peg, counted from 0, is through it, and no jaws hold it.
+    /// On a peg, counted from 0, and not held by jaws.
     OnPeg(usize),
     /// Both fingers of an instrument, or of both, press it from opposite sides.
     Held {
-        /// Which instruments hold it.
+        /// The instruments that hold it.
         by: [bool; SIDES],
     },
     /// On the board, against a peg or on another ring.
     Lying,
-    /// Nothing touches it but an instrument, if anything.
+    /// Touched by nothing, or by an instrument only.
     Falling,
-    /// Lost out of the picture: it stays where it was.
+    /// Lost out of view: it stays where it was.
     OutOfView,
 }
 
@@ -40,19 +40,18 @@ pub struct RingState {
     pub centre_m: Vector3<f64>,
     /// Its orientation; z is the axis through the hole.
     pub world_from_ring: UnitQuaternion<f64>,
-    /// What it is doing.
     pub doing: Doing,
-    /// The peg that is through it, held or not.
+    /// The peg through it, whether it is held or not.
     pub around: Option<usize>,
-    /// Board, a peg or another ring touches it.
+    /// Whether board, a peg or another ring touches it.
     pub supported: bool,
-    /// Which instruments touch it.
+    /// The instruments that touch it.
     pub touched_by: [bool; SIDES],
-    /// It hardly moves, or not at all.
+    /// Whether it is nearly at rest.
     pub slow: bool,
 }
 
-/// Slower than this a ring has come to rest as an operator sees it, m/s.
+/// Below this speed a ring looks at rest to an operator, m/s.
 const SLOW_M_S: f64 = 0.01;
 
 impl RingState {
@@ -84,7 +83,7 @@ impl Note {
 }
 
 impl Objects {
-    /// At the end of a step: which rings are lost or at rest, and what is told of each.
+    /// Determines, at the end of a step, which rings are lost or at rest, and the published state of each.
     pub(super) fn tell(&mut self) {
         for i in 0..self.rings.len() {
             let around = self.peg_in(&self.rings[i]);
@@ -124,7 +123,7 @@ impl Objects {
         }
     }
 
-    /// The peg that goes through a ring.
+    /// Returns the peg through a ring.
     fn peg_in(&self, ring: &Ring) -> Option<usize> {
         let axis = ring.circle.axis;
         if axis.z.abs() < UPRIGHT {
@@ -132,7 +131,7 @@ impl Objects {
         }
         self.pegs.iter().position(|peg| {
             let across_m = peg.from_m - ring.centre_m;
-            // Where the peg's axis goes through the plane of the ring, from its middle.
+            // The intersection of the peg's axis with the plane of the ring, from its middle.
             let up_m = -(axis.x * across_m.x + axis.y * across_m.y) / axis.z;
             let z_m = ring.centre_m.z + up_m;
             let through = across_m.xy().norm_squared() + up_m * up_m < ring.circle.radius_m * ring.circle.radius_m;

@@ -1,4 +1,4 @@
-//! What instruments feel of board, pegs and each other.
+//! Contacts of instruments with board, pegs and each other.
 
 use nalgebra::Vector3;
 
@@ -61,7 +61,7 @@ impl Objects {
     }
 }
 
-/// Where two spheres at these places touch: the place, and how; the normal points to the first.
+/// Contact of two spheres at these positions: position and geometry; the normal points to the first.
 fn between(
     ours_m: &Vector3<f64>,
     our_radius_m: f64,
@@ -76,7 +76,7 @@ fn between(
     (depth_m > 0.0).then_some((at_m, touch))
 }
 
-/// The ends of the fingers and the end of the shaft on the board.
+/// Contact of the ends of the fingers and of the shaft with the board.
 fn board_under_tool(
     tool: &mut Tool,
     z_m: f64,

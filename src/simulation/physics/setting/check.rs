@@ -1,8 +1,8 @@
-//! The range of every value.
+//! The ranges of all values.
 
 use super::{Setting, SettingError, Start};
 
-/// Maximum number of pegs: what a step costs is bounded.
+/// Maximum number of pegs: bounds the cost of a step.
 const PEGS_MOST: usize = 32;
 /// Maximum number of rings.
 pub const RINGS_MAX: usize = 12;
@@ -12,10 +12,8 @@ fn within(key: &'static str, value: f64, fits: bool, allowed: &'static str) -> R
 }
 
 impl Setting {
-    /// Whether every value is in its range.
-    ///
     /// # Errors
-    /// [`SettingError`] names the first one that is not.
+    /// [`SettingError`] for the first value out of range.
     pub fn validate(&self) -> Result<(), SettingError> {
         self.validate_board()?;
         self.validate_rings()?;

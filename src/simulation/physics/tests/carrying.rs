@@ -113,7 +113,7 @@ fn a_ring_that_is_flung_off_its_peg_was_knocked_off() {
     assert!(matches!(scene.events[..], [Event::RingKnockedOff { ring: 0, .. }]), "{:?}", scene.events);
 }
 
-/// The closed jaws go into the ring beside its peg, press it outwards against the peg, and are pulled up.
+/// The closed jaws enter the ring next to its peg, press it outwards against the peg, and are pulled up.
 #[test]
 fn an_instrument_that_drags_a_ring_up_its_peg_knocks_it_off_and_is_named() {
     let mut scene = Scene::new(&one_ring(Start::Peg(0)));

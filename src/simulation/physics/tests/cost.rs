@@ -1,11 +1,11 @@
-//! What a step costs.
+//! Cost of a step.
 
 use std::time::Instant;
 
 use super::{LEFT, RIGHT, Scene, at, instrument};
 use crate::physics::{Setting, tests::OPEN_RAD};
 
-/// Times `ticks` steps; `before` is called ahead of each and not timed.
+/// Times `ticks` steps; `before` is called before each step and not timed.
 fn told(name: &str, scene: &mut Scene, ticks: u32, mut before: impl FnMut(&mut Scene, u32)) {
     let mut costs_us: Vec<f64> = (0..ticks)
         .map(|tick| {

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use super::{Scene, at};
 use crate::physics::Setting;
 
-/// Six rings at rest, thrown if `thrown`, for so long. The energy at no time may be above what it was before, but for what contacts store.
+/// Simulates six rings for this long, at rest or `thrown`. The energy may never exceed its earlier value, except for
+/// the energy stored in contacts.
 fn energy_never_grows(thrown: bool, seconds: u32) {
     let mut scene = Scene::new(&Setting::default());
     if thrown {
@@ -20,7 +21,7 @@ fn energy_never_grows(thrown: bool, seconds: u32) {
     for _ in 0..seconds {
         for _ in 0..1000 {
             scene.objects.step(&[None, None]);
-            // Without sleep, which would hide what grows.
+            // Without sleep, which would hide a growth.
             (0..6).for_each(|ring| scene.objects.ring_mut(ring).wake());
         }
         let energy_j = scene.objects.energy_j();

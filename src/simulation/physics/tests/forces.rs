@@ -68,7 +68,7 @@ fn a_ring_held_off_its_centre_turns_the_shaft_by_its_weight() {
     scene.hands[RIGHT] = Some(instrument(RIGHT, at(0.0, 0.0, 0.001), super::OPEN_RAD));
     scene.jaws(RIGHT, 0.0);
     scene.glide(RIGHT, at(0.0, 0.0, 0.05), 0.1);
-    // The jaws turn until they point along y; the shaft comes from behind.
+    // The jaws rotate until they point along y; the shaft comes from behind.
     for tick in 1..=500 {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), f64::from(tick) * 1e-3 * std::f64::consts::PI);
         let hand = scene.hands[RIGHT].as_mut().unwrap();

@@ -1,4 +1,4 @@
-//! Whatever the input, everything stays finite, and every ring near or lost.
+//! Whatever the input, everything stays finite, and every ring is within range or lost.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -81,7 +81,7 @@ proptest! {
 }
 
 #[test]
-#[ignore = "runs for as long as it is told to: ./dev fuzz"]
+#[ignore = "runs until it is stopped: ./dev fuzz"]
 fn fuzz_motions_among_rings() {
     use proptest::{strategy::ValueTree, test_runner::TestRunner};
     nima_testing::fuzz::rounds(|seed| {

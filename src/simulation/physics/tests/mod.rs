@@ -1,4 +1,4 @@
-//! Tests of the whole: what a ring does among instruments.
+//! Tests of the whole: rings among instruments.
 
 mod carrying;
 mod cost;
@@ -24,7 +24,6 @@ pub(crate) fn at(x_m: f64, y_m: f64, z_m: f64) -> Vector3<f64> {
     Vector3::new(x_m, y_m, z_m)
 }
 
-/// Jaws that point downwards and open along x.
 pub(crate) fn downwards() -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI)
 }
@@ -39,13 +38,13 @@ pub(crate) fn one_ring(start: Start) -> Setting {
     Setting { rings: vec![start], ..Setting::default() }
 }
 
-/// Objects, and two hands that do what a test says.
+/// Objects, and two hands that a test controls.
 pub(crate) struct Scene {
     pub objects: Objects,
     pub hands: [Option<Instrument>; SIDES],
     pub loads: [Loads; SIDES],
     pub events: Vec<Event>,
-    /// Hands like those of a person: tremor, aim that is off by this, m, and jaws in line with the shaft.
+    /// Realistic hands: tremor, an error of aim of this size, m, and jaws in line with the shaft.
     pub unsure_m: f64,
     ticks: u32,
     watch: Watch,
@@ -87,7 +86,7 @@ impl Scene {
         })
     }
 
-    /// How far the next aim is off, m: every direction in turn.
+    /// Returns the error of the next aim, m: every direction in turn.
     pub(crate) fn off_m(&self) -> Vector3<f64> {
         let turn = f64::from(self.ticks);
         at(libm::sin(turn), libm::cos(turn), 0.0) * self.unsure_m
@@ -97,7 +96,7 @@ impl Scene {
         (0..(seconds * 1e3).round() as u32).for_each(|_| self.tick());
     }
 
-    /// Moves a tip to a place in a straight line, at this speed on the average, smoothly.
+    /// Moves a tip smoothly along a straight line, at this mean speed.
     pub(crate) fn glide(&mut self, side: usize, to_m: Vector3<f64>, speed_m_s: f64) {
         let from_m = self.hands[side].unwrap().tip_m;
         let ticks = ((to_m - from_m).norm() / speed_m_s * 1e3).ceil().max(1.0) as u32;
@@ -109,7 +108,7 @@ impl Scene {
         }
     }
 
-    /// Opens or closes the jaws within 0.15 s: their ends move at some 30 to 60 mm/s.
+    /// Opens or closes the jaws within 0.15 s: their ends move at about 30 to 60 mm/s.
     pub(crate) fn jaws(&mut self, side: usize, opening_rad: f64) {
         let from_rad = self.hands[side].unwrap().opening_rad;
         for tick in 1..=150 {
@@ -124,7 +123,7 @@ impl Scene {
         self.objects.rings()[ring].centre_m
     }
 
-    /// From above to the rim of a ring on the side of `x_sign`, closed on it.
+    /// Grasps the rim of a ring from above on the side of `x_sign`.
     pub(crate) fn grasp(&mut self, side: usize, ring: usize, x_sign: f64) {
         let rim_m = self.centre_m(ring) + at(x_sign * 0.00725, 0.0, 0.0) + self.off_m();
         let above_m = rim_m + at(0.0, 0.0, 0.03);

@@ -40,7 +40,7 @@ fn digest(period_s: f64) -> u64 {
 fn ten_seconds_repeat_to_the_last_bit_in_every_build() {
     let first = digest(1e-3);
     assert_eq!(first, digest(1e-3));
-    assert_eq!(first, 0xe141_2aee_caa3_272d, "a build, a processor or a law has become other: {first:#018x}");
+    assert_eq!(first, 0xe141_2aee_caa3_272d, "a build, a processor or a law has changed: {first:#018x}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The task as two hands do it.
+//! The task performed by two hands.
 
 use nima_core::{Side, task::Event};
 
@@ -6,7 +6,7 @@ use super::{LEFT, OPEN_RAD, RIGHT, Scene, at, one_ring};
 use crate::physics::{Doing, PegTransfer, Pegs, Setting, Start};
 
 impl Scene {
-    /// One hand takes a ring from its peg to the middle, the other takes it over there and puts it on a peg.
+    /// One hand takes a ring from its peg to the middle; the other takes it there and puts it on a peg.
     fn carry_over(&mut self, from: usize, ring: usize, to_peg: usize) {
         let to = 1 - from;
         let outwards = if from == LEFT { -1.0 } else { 1.0 };

@@ -19,12 +19,12 @@ fn straight() -> WireSetting {
     WireSetting { points_m: vec![[-0.05, 0.0, 0.03], [0.05, 0.0, 0.03]], goal_point: 1, ..WireSetting::default() }
 }
 
-/// How far the middle of a loop can go from that of a straight wire, m.
+/// Distance that the middle of a loop can move from the middle of a straight wire, m.
 fn room_m(setting: &WireSetting) -> f64 {
     setting.hoop.radius_m - setting.hoop.tube_radius_m - setting.radius_m
 }
 
-/// Around the wire at the origin, then at rest at this place beside it.
+/// Around the wire at the origin, then at rest at this offset.
 fn at_rest(setting: &WireSetting, off_m: Vector3<f64>) -> (Wire, Loads) {
     let mut wire = Wire::new(setting, PERIOD_S);
     let middle_m = at(0.0, 0.0, 0.03);
@@ -46,7 +46,7 @@ fn the_force_is_stiffness_times_overlap_also_where_the_wire_is_pulled_through_th
         for way in [at(0.0, 0.0, 1.0), at(0.0, -0.6, 0.8), at(0.0, 1.0, 0.0)] {
             let (wire, loads) = at_rest(&setting, way * (room_m + overlap_m));
             let law_n = way * (-setting.contact.stiffness_n_m * overlap_m);
-            // Damping is over; friction of the way there is along the way.
+            // Damping is over; friction of the approach acts along the approach.
             assert!((loads.tip_n - law_n).norm() < 0.02 * law_n.norm(), "{overlap_m}: {} {law_n}", loads.tip_n);
             let state = wire.states()[RIGHT];
             assert!(state.touches && (state.deepest_m - overlap_m).abs() < 1e-8, "{state:?}");
@@ -85,7 +85,7 @@ fn sliding_along_the_wire_is_held_back_by_the_law_of_coulomb() {
     assert!((ratio - setting.contact.friction).abs() < 0.01, "{}", loads.tip_n);
 }
 
-/// The distance of the loop from the wire, by trying.
+/// Distance of the loop from the wire, by brute force.
 fn tried_m(wire: &Wire, setting: &WireSetting, centre_m: &Vector3<f64>) -> f64 {
     let points_m = wire.curve().points_m();
     let gap_m = |point_m: Vector3<f64>| {
@@ -133,7 +133,7 @@ fn the_curve_goes_through_its_points_and_is_as_long_as_an_arc_is() {
     let exact_m = 0.03 * std::f64::consts::FRAC_PI_2;
     assert!((curve.length_m() / exact_m - 1.0).abs() < 2e-3, "{} m", curve.length_m());
     let most_m = curve.points_m().iter().map(|at_m| (at_m.xy().norm() - 0.03).abs()).fold(0.0, f64::max);
-    assert!(most_m < 1e-4, "{most_m} m beside the arc");
+    assert!(most_m < 1e-4, "{most_m} m from the arc");
 }
 
 /// A mass that hangs on nothing but the loop, thrown inside it, bounces from side to side for ten minutes.
@@ -154,7 +154,7 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
         for tick in 0..600_000 {
             let loads = wire.step(&Side::Right.alone(holding(tip_m)))[RIGHT];
             speed_m_s += loads.tip_n * (PERIOD_S / MASS_KG);
-            // It flies along the wire to the board's end otherwise.
+            // Otherwise it would fly along the wire to the board's end.
             speed_m_s.x *= if tick % 2000 == 1999 { -1.0 } else { 1.0 };
             tip_m += speed_m_s * PERIOD_S;
             if wire.states()[RIGHT].touches {
@@ -163,14 +163,14 @@ fn energy_of_a_loop_that_bounces_around_the_wire_does_not_grow() {
                 most_j = most_j.max(0.5 * MASS_KG * speed_m_s.norm_squared());
             }
         }
-        // The step of 1 ms on springs without damping trembles by this much.
+        // The step of 1 ms on springs without damping causes this much ripple.
         assert!(bounces > 100 && most_j < 1.03 * first_j, "{damping_n_s_m}: {most_j} J of {first_j} J, {bounces}");
         let last_j = 0.5 * MASS_KG * speed_m_s.norm_squared();
         assert!(damping_n_s_m == 0.0 || last_j < 0.2 * first_j, "what is damped comes to rest: {last_j} J");
     }
 }
 
-/// Ten seconds in which two loops go along the wire, and beside it.
+/// Ten seconds in which two loops move along the wire, and outside it.
 fn digest() -> u64 {
     let setting = WireSetting::default();
     let mut wire = Wire::new(&setting, PERIOD_S);
@@ -199,7 +199,7 @@ fn digest() -> u64 {
 fn ten_seconds_on_a_wire_repeat_to_the_last_bit_in_every_build() {
     let first = digest();
     assert_eq!(first, digest());
-    assert_eq!(first, 0xacd3_9e86_be76_6b46, "a build, a processor or a law has become other: {first:#018x}");
+    assert_eq!(first, 0xacd3_9e86_be76_6b46, "a build, a processor or a law has changed: {first:#018x}");
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn a_loop_is_held_back_by_the_board_and_turns_with_its_shaft_if_told_so() {
     let loads = wire.step(&Side::Right.alone(low))[RIGHT];
     assert!(loads.touching.board && (loads.tip_n.z - 1.0).abs() < 1e-9, "1 kN/m at 1 mm: {}", loads.tip_n);
     setting.hoop.axis = None;
-    // The shaft stands upright, so the loop lies flat and the wire crosses none of its plane.
+    // The shaft is upright, so the loop lies flat and the wire does not cross its plane.
     let mut wire = Wire::new(&setting, PERIOD_S);
     let mut flat = holding(at(0.0, 0.02, 0.03));
     flat.trocar_m = at(0.0, 0.02, 0.15);
@@ -271,7 +271,7 @@ fn touches_are_counted_once_with_their_times_and_the_goal_ends_the_task() {
     told.glide(RIGHT, middle(-0.06), middle(-0.02), 1.0);
     told.glide(RIGHT, middle(-0.02), middle(-0.02) + up_m, 0.5);
     told.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02), 0.5);
-    // Clear for 20 ms only: the same touch.
+    // Clear for only 20 ms: the same touch.
     for _ in 0..3 {
         told.glide(RIGHT, middle(-0.02) + up_m, middle(-0.02) + up_m, 0.1);
         told.glide(RIGHT, middle(-0.02), middle(-0.02), 0.02);
@@ -281,7 +281,7 @@ fn touches_are_counted_once_with_their_times_and_the_goal_ends_the_task() {
     let kinds: Vec<Event> = told.events.iter().map(|(_, event)| *event).collect();
     let touch = [Event::WireTouched { side: right }, Event::WireLeft { side: right }];
     assert_eq!(kinds, [touch[0], touch[1], touch[0], touch[1], Event::Ended], "{:?}", told.events);
-    // It overlaps by at most 0.3 mm of the way of some 4.9 mm in 0.5 s, going and coming.
+    // It overlaps by at most 0.3 mm of a path of about 4.9 mm in 0.5 s, there and back.
     let lasts_s = told.events[1].0 - told.events[0].0;
     let law_s = 2.0 * 0.5 * 3e-4 / up_m.z;
     assert!((lasts_s - law_s).abs() < 4e-3, "{lasts_s} s instead of {law_s} s");
@@ -299,7 +299,7 @@ fn only_a_loop_that_came_from_the_free_end_reaches_the_goal() {
     told.glide(LEFT, middle(0.06), middle(0.0), 1.0);
     told.glide(LEFT, middle(0.0), middle(0.0495), 1.0);
     assert!(!told.task.is_done() && told.task.share() < 1e-9);
-    // To the free end, over it and half way back: then it leaves there, and is no longer on its way.
+    // To the free end, over it and half way back: it leaves the wire there, and its run no longer counts.
     told.glide(LEFT, middle(0.0495), middle(-0.045), 1.0);
     told.glide(LEFT, middle(-0.045), middle(0.0), 1.0);
     assert!((told.task.share() - 0.05 / 0.099).abs() < 1e-3, "{}", told.task.share());

@@ -4,32 +4,34 @@ use nima_core::{SIDES, Side, task::Event};
 
 use crate::physics::objects::{Doing, RingState};
 
-/// A ring is grasped when it was held for this long, s.
+/// A ring counts as grasped when it has been held for this long, s.
 const GRASPED_AFTER_S: f64 = 0.03;
-/// It is let go when it was not held for this long, s: less is a slip. A ring falls 11 mm in this time.
+/// A ring counts as released when it has not been held for this long, s; a shorter time is a slip. A ring falls 11 mm
+/// in this time.
 const LET_GO_AFTER_S: f64 = 0.05;
-/// It has left a peg, or is on one, after this, s.
+/// A ring has left a peg, or is on one, after this time, s.
 const OFF_PEG_AFTER_S: f64 = 0.05;
 const ON_PEG_AFTER_S: f64 = 0.1;
-/// A ring that nobody holds was knocked off its peg after this, s.
+/// A ring that is not held was knocked off its peg after this time, s.
 const KNOCKED_AFTER_S: f64 = 0.1;
-/// It lies after so long at rest, or after so long in all, s; until then it may still roll out of the picture.
+/// A released ring has landed after this time at rest, or after this time in total, s; until then it may still roll out
+/// of view.
 const LIES_AFTER_S: f64 = 0.15;
 const LIES_AT_LAST_S: f64 = 2.0;
 
-/// What is known of a ring.
+/// Tracked state of a ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
-    /// Nobody holds it; on this peg, or somewhere.
+    /// Not held; on this peg, or elsewhere.
     Free {
         peg: Option<usize>,
     },
-    /// Held; `peg` is where it was grasped, until it left that.
+    /// Held; `peg` is the peg on which it was grasped, until the ring has left it.
     Held {
         side: Side,
         peg: Option<usize>,
     },
-    /// Let go, and not known yet what becomes of it. `landed` if something has carried it since.
+    /// Released, with an undecided outcome. `landed` if something has supported it since.
     LetGo {
         side: Side,
         peg: Option<usize>,
@@ -45,7 +47,7 @@ pub(super) struct Following {
     /// For how long each side has held it, and has not, s.
     held_s: [f64; SIDES],
     loose_s: [f64; SIDES],
-    /// For how long it has been around the peg of the moment, off the peg of its stage, and at rest, s.
+    /// For how long it has been around the current peg, off the peg of its stage, and at rest, s.
     on_s: f64,
     on: Option<usize>,
     off_s: f64,
@@ -71,7 +73,7 @@ impl Following {
         }
     }
 
-    /// The next step. `last` is who touched any ring last.
+    /// Processes the next step. `last` is the side that last touched any ring.
     pub(super) fn look(
         &mut self,
         ring: usize,
@@ -122,7 +124,7 @@ impl Following {
         self.rest_s = for_s(self.rest_s, state.supported && state.slow && !by.contains(&true), period_s);
     }
 
-    /// The side that holds it firmly, other than `than`; the left one if both do.
+    /// Returns the side that holds it firmly, other than `than`; the left one if both do.
     fn firm(&self, than: Option<Side>) -> Option<Side> {
         Side::LEFT_TO_RIGHT.into_iter().find(|side| Some(*side) != than && self.held_s[side.index()] >= GRASPED_AFTER_S)
     }
@@ -137,7 +139,7 @@ impl Following {
                 tell(Event::RingKnockedOff { ring, side: self.last });
                 Stage::Free { peg: None }
             }
-            // A ring that was pushed onto a peg, or fell on it, is on it.
+            // A ring that was pushed onto a peg, or fell on it, counts as on it.
             None if self.on_s >= ON_PEG_AFTER_S => Stage::Free { peg: self.on },
             peg => Stage::Free { peg },
         }

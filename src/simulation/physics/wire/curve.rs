@@ -1,4 +1,5 @@
-//! The middle of a wire: a smooth curve through points, as many short straight pieces; and where it is closest to a loop.
+//! The middle line of a wire: a smooth curve through points, as many short straight pieces; and its closest points to a
+//! loop.
 //!
 //! Only roots and divisions, so that every processor gives the same bits.
 
@@ -7,11 +8,11 @@ use nalgebra::Vector3;
 use super::PLACES;
 use crate::physics::geometry::Circle;
 
-/// Longest piece, m. In a bend of 5 mm it is 6 um away from the arc.
+/// Maximum length of a piece, m. In a bend of 5 mm radius it deviates from the arc by 6 um.
 const PIECE_M: f64 = 5e-4;
-/// Least pieces between two points.
+/// Minimum number of pieces between two points.
 const PIECES_LEAST: usize = 8;
-/// Steps of the golden section that narrow a closest place down, to 1/15000 of where it may be.
+/// Steps of the golden section that narrow down a closest point, to 1/15000 of the interval.
 const NARROWINGS: usize = 20;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
@@ -30,34 +31,35 @@ pub struct Curve {
     points_m: Vec<Vector3<f64>>,
     /// Length from the beginning to each point, m.
     along_m: Vec<f64>,
-    /// The same of the points that it was made of.
+    /// The same for the points of the setting.
     given_m: Vec<f64>,
-    /// Longest piece, m.
+    /// Maximum length of a piece, m.
     piece_m: f64,
 }
 
-/// A place where wire and loop are closest.
+/// A closest point between wire and loop.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_field_names, reason = "a name ends with its unit")]
 pub(super) struct Place {
-    /// Where on the wire, m along it.
+    /// Position along the wire, m.
     pub along_m: f64,
     pub wire_m: Vector3<f64>,
-    /// Where on the middle line of the loop's tube.
+    /// Position on the middle line of the loop's tube.
     pub loop_m: Vector3<f64>,
 }
 
-/// What of a curve is near a loop.
+/// The part of a curve near a loop.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reach {
-    /// Where it is closest, and closer than it may.
+    /// Closest points that are nearer than allowed.
     pub places: [Option<Place>; PLACES],
-    /// Where it goes through the plane of the loop nearest to its middle: m along it, and distance from the middle, m.
+    /// The crossing of the loop's plane that is nearest to the loop's middle: m along the curve, and distance from the
+    /// middle, m.
     pub through: Option<(f64, f64)>,
 }
 
 impl Curve {
-    /// Through these points, of which there are at least two, each apart from the next.
+    /// Through these points: at least two, each apart from the next.
     pub(super) fn through(given_m: &[[f64; 3]]) -> Self {
         let given: Vec<Vector3<f64>> = given_m.iter().map(|at_m| Vector3::from(*at_m)).collect();
         let mut curve =
@@ -86,7 +88,6 @@ impl Curve {
         self.piece_m = self.piece_m.max(piece_m);
     }
 
-    /// Its length, m.
     pub fn length_m(&self) -> f64 {
         self.along_m.last().copied().unwrap_or(0.0)
     }
@@ -96,12 +97,12 @@ impl Curve {
         &self.points_m
     }
 
-    /// How far along it the point with this number of the setting is, m; the end for one that there is not.
+    /// Returns the position along it of the setting's point with this number, m; the end if there is no such point.
     pub fn given_m(&self, point: usize) -> f64 {
         self.given_m.get(point).copied().unwrap_or_else(|| self.length_m())
     }
 
-    /// The place so far along it, m; its ends before and behind it.
+    /// Returns the point at this position along it, clamped to its ends.
     pub fn at(&self, along_m: f64) -> Vector3<f64> {
         let after = self.along_m.partition_point(|before_m| *before_m < along_m);
         let (Some(from), Some(to)) = (self.points_m.get(after.saturating_sub(1)), self.points_m.get(after)) else {
@@ -116,7 +117,7 @@ impl Curve {
         from + (to - from) * share
     }
 
-    /// The place at a share between two points, counted in points.
+    /// Returns the position along the curve and the point at a fractional index.
     fn between(&self, place: f64) -> (f64, Vector3<f64>) {
         let last = self.points_m.len() - 1;
         let place = place.clamp(0.0, last as f64);
@@ -129,11 +130,11 @@ impl Curve {
         )
     }
 
-    /// Where it is closer to a loop's middle line than `both_m`, and where it goes through the loop.
+    /// Returns where it is closer to a loop's middle line than `both_m`, and where it passes through the loop.
     pub(super) fn near(&self, circle: &Circle, both_m: f64) -> Reach {
         let reach_m = circle.radius_m + both_m + self.piece_m;
         let mut reach = Reach::default();
-        // The two points before; far away where they were passed over.
+        // The two previous points; infinity where they were skipped.
         let mut gaps_m = [f64::INFINITY; 2];
         let mut height_before_m = None;
         let mut i = 0;
@@ -167,7 +168,7 @@ impl Curve {
     /// Notes the point before `next` if it is closer than its neighbours, and close enough.
     fn note(&self, circle: &Circle, next: usize, gaps_m: &[f64; 3], both_m: f64, reach: &mut Reach) {
         let [before_m, here_m, after_m] = *gaps_m;
-        // Within a piece the gap falls by at most half its length more.
+        // Within a piece the gap decreases by at most half its length more.
         let is_least = here_m < before_m && here_m <= after_m && here_m < both_m + self.piece_m;
         let Some(free) = reach.places.iter_mut().find(|place| place.is_none()).filter(|_| is_least) else { return };
         let point = (next - 1) as f64;
@@ -175,13 +176,14 @@ impl Curve {
         *free = ((place.loop_m - place.wire_m).norm() < both_m).then_some(place);
     }
 
-    /// The closest place at most so far from here, m along the wire.
+    /// Returns the closest point within this distance along the wire, m.
     pub(super) fn closest_around(&self, circle: &Circle, along_m: f64, within_m: f64) -> Place {
         let place = |along_m: f64| self.along_m.partition_point(|before_m| *before_m < along_m) as f64;
         self.closest(circle, [place(along_m - within_m) - 1.0, place(along_m + within_m)])
     }
 
-    /// The closest place between two, counted in points (golden section; Kiefer, Proc. Amer. Math. Soc. 4, 1953).
+    /// Returns the closest point between two fractional indices (golden section; Kiefer, Proc. Amer. Math. Soc. 4,
+    /// 1953).
     fn closest(&self, circle: &Circle, [mut low, mut high]: [f64; 2]) -> Place {
         let place = |at: f64| {
             let (along_m, wire_m) = self.between(at);
@@ -200,7 +202,7 @@ impl Curve {
         place(0.5 * (low + high)).0
     }
 
-    /// Where it goes through the plane of a loop, nearest to a place and at most so far from it, m along it.
+    /// Returns the crossing of a loop's plane nearest to a position and at most this far from it, m along the wire.
     pub(super) fn crossing(&self, circle: &Circle, from_m: f64, within_m: f64) -> Option<f64> {
         let last = self.points_m.len().checked_sub(2)?;
         let here = self.along_m.partition_point(|along_m| *along_m <= from_m).saturating_sub(1).min(last);
@@ -215,7 +217,8 @@ impl Curve {
         })
     }
 
-    /// Where a piece goes through the plane of a loop: m along the curve, and distance from the middle of the loop, m.
+    /// Returns the crossing of a loop's plane by a piece: m along the curve, and distance from the middle of the loop,
+    /// m.
     fn cross(&self, circle: &Circle, piece: usize, from_m: f64, to_m: f64) -> (f64, f64) {
         let span_m = from_m - to_m;
         let share = if span_m.abs() > 0.0 { (from_m / span_m).clamp(0.0, 1.0) } else { 0.0 };
@@ -254,7 +257,7 @@ fn slopes(points_m: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// The cubic from one place and slope to another, at a share `t` of the way.
+/// The cubic from one point and slope to another, at a fraction `t`.
 fn hermite(
     from: Vector3<f64>,
     from_slope: Vector3<f64>,

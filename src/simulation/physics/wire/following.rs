@@ -1,15 +1,16 @@
-//! Tells from the loops what happens on a wire, and when the task is done.
+//! Detects the events of loops on a wire, and the end of the task.
 
 use nima_core::{SIDES, Side, task::Event};
 
 use super::{Wire, WireSetting, WireState};
 
-/// A touch is over when the loop has been clear of the wire for this long, s: a loop that slides along the wire jumps a little.
+/// A touch is over when the loop has been clear of the wire for this long, s: a loop that slides along the wire bounces
+/// a little.
 const CLEAR_AFTER_S: f64 = 0.05;
 /// A loop is at the beginning of the wire up to this distance from its free end, m.
 const BEGINNING_M: f64 = 0.012;
 
-/// The state of the task: a loop that came onto the wire at its free end has to reach the goal.
+/// The state of the task: a loop that entered the wire at its free end has to reach the goal.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -40,27 +41,27 @@ pub struct WireTask {
 struct Following {
     touching: bool,
     clear_s: f64,
-    /// It came onto the wire at its free end, and has not left it since.
+    /// Whether it entered the wire at its free end and has stayed on it since.
     on_its_way: bool,
     farthest_m: f64,
 }
 
-/// Nearer to the goal than this a loop has reached it, m: the end of a wire cannot be passed and still be in the loop.
+/// A loop nearer than this to the goal has reached it, m: the end of a wire cannot be passed with the wire still in the
+/// loop.
 const REACHED_M: f64 = 1e-3;
 
 impl WireTask {
-    /// At the beginning.
     pub fn new(setting: &WireSetting) -> Self {
         let goal_m = setting.curve().given_m(setting.goal_point) - REACHED_M;
         Self { goal_m, loops: [Following::default(); SIDES], touches: 0, is_done: false }
     }
 
-    /// Begins anew; a touch that lasts is then a new one.
+    /// Restarts the task; a current touch then counts as a new one.
     pub fn begin(&mut self) {
         *self = Self { loops: [Following::default(); SIDES], touches: 0, is_done: false, ..*self };
     }
 
-    /// Looks at the loops after a step; once for each step. `tell` takes what happened, and how long ago, s.
+    /// Examines the loops after a step; call it once for each step. `tell` receives each event and its age, s.
     pub fn look(&mut self, wire: &Wire, tell: &mut dyn FnMut(f64, Event)) {
         if self.is_done {
             return;
@@ -81,12 +82,12 @@ impl WireTask {
         self.is_done
     }
 
-    /// How often a loop has touched the wire.
+    /// Number of contacts between loops and wire.
     pub const fn touches(&self) -> u32 {
         self.touches
     }
 
-    /// Share of the way to the goal that is done.
+    /// Completed fraction of the path to the goal.
     pub fn share(&self) -> f64 {
         let farthest_m = self.loops.iter().map(|following| following.farthest_m).fold(0.0, f64::max);
         (farthest_m / self.goal_m.max(1e-9)).clamp(0.0, 1.0)
@@ -94,7 +95,6 @@ impl WireTask {
 }
 
 impl Following {
-    /// Whether a touch has begun.
     fn touch(&mut self, side: Side, state: &WireState, period_s: f64, tell: &mut dyn FnMut(f64, Event)) -> bool {
         if state.touches {
             self.clear_s = 0.0;
@@ -112,7 +112,7 @@ impl Following {
         false
     }
 
-    /// How far it has come on its way from the free end, m.
+    /// Distance covered from the free end, m.
     fn goes(&mut self, state: &WireState) -> f64 {
         match state.along_m {
             Some(along_m) => self.on_its_way |= along_m <= BEGINNING_M,

@@ -1,4 +1,4 @@
-//! What a scene file says of its wire.
+//! The wire in a scene file.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -10,10 +10,10 @@ use crate::physics::{
     setting::{Board, SettingError},
 };
 
-/// Most points, and longest wire, m: what a step costs is bounded.
+/// Maximum number of points, and maximum length of the wire, m: bounds the cost of a step.
 const POINTS_MOST: usize = 64;
 const LONGEST_M: f64 = 0.6;
-/// Nearest that two neighbouring points may be, m.
+/// Minimum distance of two neighbouring points, m.
 const APART_M: f64 = 1e-3;
 
 /// Wire, loop and board: the section `[wire]` of a scene file. Workspace frame, z up. Every key has a default: a wire that swings from left to
@@ -33,16 +33,14 @@ const APART_M: f64 = 1e-3;
 pub struct WireSetting {
     /// Points through which the middle of the wire goes, m, from its free end on.
     pub points_m: Vec<[f64; 3]>,
-    /// The loop has to come as far as this point, counted from 0.
+    /// The goal: the point that the loop has to reach, counted from 0.
     pub goal_point: usize,
-    /// Radius of the wire, m.
     pub radius_m: f64,
     /// The loop around the tip of each instrument.
     #[serde(rename = "loop")]
     pub hoop: Hoop,
     /// Spring, damper and friction of loop and wire, and of loop and board.
     pub contact: WireContact,
-    /// The board under the wire.
     pub board: Board,
 }
 
@@ -54,24 +52,24 @@ pub struct Hoop {
     pub radius_m: f64,
     /// Radius of its tube, m.
     pub tube_radius_m: f64,
-    /// The direction through it, of any length; without one it is along the shaft, so that the loop's plane is perpendicular to it.
+    /// The direction through it, of any length; by default along the shaft, so that the loop's plane is perpendicular
+    /// to it.
     pub axis: Option<[f64; 3]>,
 }
 
-/// The law of a place that touches.
+/// The law of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WireContact {
-    /// Stiffness, N/m.
     pub stiffness_n_m: f64,
-    /// Damping, N s/m.
     pub damping_n_s_m: f64,
     /// Coefficient of Coulomb friction.
     pub friction: f64,
 }
 
 impl Default for WireSetting {
-    /// Bends of some 12 mm radius to both sides and up and down, then down to the board. The goal is at the last crest.
+    /// Bends of about 12 mm radius to both sides and up and down, then down to the board. The goal is at the last
+    /// crest.
     fn default() -> Self {
         let points_m = vec![
             [-0.050, 0.000, 0.026],
@@ -99,7 +97,7 @@ impl Default for WireSetting {
 }
 
 impl Default for Hoop {
-    /// 12 mm across, in the plane of a hand that goes from left to right.
+    /// 12 mm across, in the plane of a hand that moves from left to right.
     fn default() -> Self {
         Self { radius_m: 0.006, tube_radius_m: 0.0006, axis: Some([1.0, 0.0, 0.0]) }
     }
@@ -113,7 +111,7 @@ impl Default for WireContact {
 }
 
 impl Hoop {
-    /// The middle line of its tube while its instrument is here.
+    /// Returns the middle line of its tube for this pose of its instrument.
     pub(super) fn circle(&self, at: &Instrument) -> Circle {
         let along_shaft = at.trocar_m - at.tip_m;
         let (axis, _) = unit_or(&self.axis.map_or(along_shaft, Vector3::from), &Vector3::x());
@@ -130,15 +128,13 @@ fn within(key: &'static str, value: f64, fits: bool, allowed: &'static str) -> R
 }
 
 impl WireSetting {
-    /// The curve of the wire's middle. The setting must have been validated.
+    /// Returns the curve of the wire's middle. The setting must have been validated.
     pub fn curve(&self) -> Curve {
         Curve::through(&self.points_m)
     }
 
-    /// Whether every value is in its range.
-    ///
     /// # Errors
-    /// [`SettingError`] names the first one that is not.
+    /// [`SettingError`] for the first value out of range.
     pub fn validate(&self) -> Result<(), SettingError> {
         self.validate_points()?;
         let fits = (2e-4..=0.01).contains(&self.radius_m);

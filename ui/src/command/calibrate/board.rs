@@ -1,4 +1,4 @@
-//! `nima calibrate board`: a checkerboard for a printer.
+//! `nima calibrate board`: draws a checkerboard for printing.
 
 use std::path::PathBuf;
 
@@ -13,10 +13,10 @@ pub(in crate::command) struct Arguments {
     /// Inner corners along both sides, one number odd and the other even
     #[arg(long, value_name = "AxB", default_value = "9x6")]
     board: Corners,
-    /// Side of a square
+    /// Side length of a square
     #[arg(long, value_name = "MM", default_value_t = 10.0)]
     square_mm: f64,
-    /// Write the drawing to this file
+    /// File for the drawing
     #[arg(long, value_name = "F.svg")]
     out: PathBuf,
 }
@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     nima_files::write_atomically(&arguments.out, |file| file.write_all(board.svg().as_bytes()))
         .with_context(|| format!("cannot write {}", arguments.out.display()))?;
     output::line(&format!(
-        "{}: print it at 100 %, measure a square, and fix the paper to something flat and stiff",
+        "{}: print it at 100 %, measure a square, and fix the paper to a flat, stiff board",
         arguments.out.display()
     ))
 }

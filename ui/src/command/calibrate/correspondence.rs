@@ -1,4 +1,4 @@
-//! `nima calibrate correspondence`: the rotation between both sensors from a file of pairs.
+//! `nima calibrate correspondence`: fits the rotation between both sensors to a file of force pairs.
 
 use std::{fmt::Write as _, path::PathBuf};
 
@@ -17,23 +17,23 @@ use crate::{command::output, words::Words as _};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
-    /// CSV file with `f1x_n, f1y_n, f1z_n` (wrist, gravity-free), `f2x_n, f2y_n, f2z_n` (tissue) and, where the wrist turned
+    /// CSV file with `f1x_n, f1y_n, f1z_n` (wrist, gravity-free), `f2x_n, f2y_n, f2z_n` (tissue) and, if the wrist turned
     /// between the pushes, `qw, qx, qy, qz` (`s1_from_c`)
     pairs: PathBuf,
-    /// Write the calibration to this file; the previous one is kept as F.toml.previous
-    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
+    /// Write the calibration to this file and keep the previous one as F.toml.previous (replaces an existing file and keeps
+    /// its permissions; follows a link; rejects the input file, a device or a pipe)
     #[arg(long, value_name = "F.toml")]
     out: Option<PathBuf>,
-    /// Serial number of the wrist sensor, for the file
+    /// Serial number of the wrist sensor, stored in the file
     #[arg(long, value_name = "SERIAL", default_value = "unknown")]
     sensor: String,
-    /// Name of the tool, for the file
+    /// Name of the tool, stored in the file
     #[arg(long, value_name = "NAME", default_value = "unknown")]
     tool: String,
-    /// Sensor 2 reports the force on the tissue, not on the tool: change its sign
+    /// Change the sign of sensor 2, which reports the force on the tissue instead of on the tool
     #[arg(long)]
     flip_s2: bool,
-    /// Write the file even if the verdict rejects it; your name is written into it
+    /// Write the file even if the verdict rejects it; your name is stored in the file
     #[arg(long = "override", value_name = "NAME")]
     override_by: Option<String>,
     /// Reason for --override
@@ -46,7 +46,7 @@ pub(in crate::command) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.override_by.as_deref().is_some_and(|name| name.trim().is_empty()) {
-        bail!("--override needs the name of the person who decides");
+        bail!("--override requires the name of the person who decides");
     }
     if let Some(out) = &arguments.out {
         super::check(out, &arguments.pairs)?;
@@ -61,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     {
         let record =
             CorrespondenceRecord::of(&report, [&arguments.sensor, &arguments.tool], arguments.flip_s2, &utc_now());
-        let mut record = record.with_context(|| format!("{}: there is no rotation to write", report.reason))?;
+        let mut record = record.with_context(|| format!("{}: no rotation to write", report.reason))?;
         if let (false, Some(name)) = (accepted, &arguments.override_by) {
             record.judgement.override_by(name, arguments.override_reason.as_deref());
         }
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn in_words(report: &CorrespondenceReport) -> String {
-    // Writing into a String cannot fail.
+    // Writing to a String cannot fail.
     let mut text = format!("{}: {}\n", report.verdict.words(), report.reason);
     let excitation = &report.excitation;
     writeln!(

@@ -23,8 +23,8 @@ enum Model {
 pub(in crate::command) struct Arguments {
     /// CSV file, one still pose per row: `fx_n,fy_n,fz_n[,tx_nm,ty_nm,tz_nm]` with `ax,ay,az` (m/s^2) or `qw,qx,qy,qz` (base from sensor)
     poses: PathBuf,
-    /// Write the calibration to this TOML file, when it is accepted; the one before is kept as F.toml.previous
-    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
+    /// Write an accepted calibration to this TOML file and keep the previous one as F.toml.previous (replaces an existing
+    /// file and keeps its permissions; follows a link; rejects the input file, a device or a pipe)
     #[arg(long, value_name = "F.toml")]
     out: Option<PathBuf>,
     /// Serial number of the sensor
@@ -36,10 +36,10 @@ pub(in crate::command) struct Arguments {
     /// The accelerometer's vector points down at rest, not up
     #[arg(long)]
     flip_imu: bool,
-    /// Model to keep (default: physical, or gain if the poses clearly support it)
+    /// Model to use (default: physical, or gain if the poses clearly support it)
     #[arg(long)]
     model: Option<Model>,
-    /// Write the file even if the verdict rejects it; your name is written into it
+    /// Write the file even if the verdict rejects it; your name is stored in the file
     #[arg(long = "override", value_name = "NAME", requires = "out")]
     override_by: Option<String>,
     /// Reason for --override
@@ -80,7 +80,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
     let Some(out) = &arguments.out else { return Ok(()) };
     let Some(mut record) = report.record(&arguments.sensor, &arguments.tool, &store::utc_now()) else {
-        bail!("there is no model to write to {}: {}", out.display(), report.reason);
+        bail!("no model to write to {}: {}", out.display(), report.reason);
     };
     if let (false, Some(name)) = (report.verdict == Verdict::Accepted, &arguments.override_by) {
         record.judgement.override_by(name, arguments.override_reason.as_deref());
@@ -92,7 +92,7 @@ fn save(arguments: &Arguments, report: &GravityReport) -> anyhow::Result<()> {
 fn in_words(report: &GravityReport) -> String {
     let mut text = format!("{}: {}\n", report.verdict.words(), report.reason);
     let condition = report.condition.map_or_else(|| "infinite".to_owned(), |condition| format!("{condition:.1}"));
-    // Writing into a String cannot fail.
+    // Writing to a String cannot fail.
     writeln!(text, "{} poses, coverage {:.2}, condition {condition}", report.poses, report.coverage).ok();
     if !report.outliers.is_empty() {
         let rows: Vec<String> = report.outliers.iter().map(|index| (index + 1).to_string()).collect();
@@ -112,7 +112,7 @@ fn in_words(report: &GravityReport) -> String {
             writeln!(text, "{:<9} torque {} Nm", "", figures(torque_nm, 5)).ok();
         }
     }
-    text.push_str("(errors per axis x, y, z; held out: on poses the model was not fitted on)");
+    text.push_str("(errors per axis x, y, z; held out: on poses that were not used for the fit)");
     text
 }
 

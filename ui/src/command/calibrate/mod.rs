@@ -1,4 +1,4 @@
-//! `nima calibrate`: calibrations from files, each with a verdict; or all of an emulated rig.
+//! `nima calibrate`: calibrations from files, each with a verdict, or all calibrations of an emulated rig.
 
 mod board;
 mod correspondence;
@@ -18,9 +18,9 @@ pub(super) enum CalibrateCommand {
     Gravity(gravity::Arguments),
     /// Find the rotation between the sensor under the tissue and the wrist sensor from pairs of forces
     Correspondence(correspondence::Arguments),
-    /// Draw a checkerboard in its true size, for a printer
+    /// Draw a checkerboard in true size, for printing
     Board(board::Arguments),
-    /// Let the simulated technician of an emulated rig do every calibration of every arm, and save them (some minutes)
+    /// Run all calibrations of an emulated rig by its simulated technician, and save them (some minutes)
     Rig(rig::Arguments),
 }
 
@@ -33,7 +33,7 @@ pub(super) fn run(command: &CalibrateCommand) -> anyhow::Result<()> {
     }
 }
 
-/// Checks before the work that a calibration can be written to `out`, and the previous one next to it.
+/// Checks, before the work starts, that a calibration can be written to `out`, and the previous one next to it.
 fn check(out: &Path, input: &Path) -> anyhow::Result<()> {
     output::check(out, &[input])?;
     if out.exists() { output::check(&store::previous(out), &[input]) } else { Ok(()) }

@@ -1,8 +1,8 @@
 //! `nima calibrate rig`: all calibrations of an emulated rig without a screen.
 //!
-//! The same wizards as in the console, in the same order of steps: gravity of both arms, correspondence, tip force. The
-//! simulated technician at the arms reads what they ask for; what they learn comes through the drivers. The results are saved as
-//! those of the console, for the sensors and tools of the rig.
+//! The wizards and their order of steps are those of the console: gravity of both arms, correspondence, tip force. The
+//! simulated technician at the arms follows their instructions; the wizards receive data only through the drivers. The
+//! results are saved as in the console, for the sensors and tools of the rig.
 
 use std::{
     thread,
@@ -34,30 +34,31 @@ use crate::{
     telling::tell,
 };
 
-/// A step that takes longer than this has failed.
+/// Timeout of a step.
 const PATIENCE: Duration = Duration::from_mins(5);
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
-    /// Rig: built-in name or TOML file; it must be emulated
+    /// Rig: built-in name or TOML file; must be emulated
     #[arg(long, value_name = "RIG", default_value = "emulated")]
     rig: String,
-    /// Scene: built-in name or TOML file; it must have tissue (default: `bimanual` for a rig with two arms, else `peg_transfer`)
+    /// Scene: built-in name or TOML file; must contain tissue (default: `bimanual` for a rig with two arms, else
+    /// `peg_transfer`)
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// Calibrate the wrist sensor of this arm only: right or left
+    /// Calibrate only the wrist sensor of this arm: right or left
     #[arg(long, value_name = "SIDE", value_parser = side)]
     arm: Option<Side>,
-    /// Do this calibration only
+    /// Run only this calibration
     #[arg(long, value_name = "WIZARD")]
     only: Option<Which>,
-    /// Do the frame calibrations too: sensor mount, tip, hand-eye, table, view and trocar
+    /// Also run the frame calibrations: sensor mount, tip, hand-eye, table, view and trocar
     #[arg(long, conflicts_with = "only")]
     frames: bool,
 }
 
 impl Arguments {
-    /// Those of the force, unless another was asked for: the frames of an emulated rig are those of its file.
+    /// By default only the force calibrations: the file of an emulated rig has the right frames.
     fn does(&self, which: Which) -> bool {
         let usual = self.frames || !matches!(which, Which::Frame(_));
         // The simulated technician has no board.
@@ -74,7 +75,7 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let sides: Vec<_> = Side::ALL.into_iter().filter(|side| arguments.arm.is_none_or(|arm| arm == *side)).collect();
     let sides: Vec<_> = sides.into_iter().filter(|side| scene.measures_at_wrist(&rig, *side)).collect();
     if sides.is_empty() {
-        bail!("rig \"{}\" has no sensor at the wrist of such an arm: there is nothing to calibrate", rig.name);
+        bail!("rig \"{}\" has no wrist sensor on such an arm: nothing to calibrate", rig.name);
     }
     let leave = setup.leave()?;
     let Some(emulators) = Emulators::start(setup.rig(), setup.scene(), rig.devices.as_ref())? else {
@@ -99,10 +100,8 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     super::output::line(&bench.saved.join("\n"))
 }
 
-/// The running loop, the technician, and the wizards.
 struct Bench {
     plan: Plan,
-    /// Name or path of the rig.
     rig: String,
     handle: Option<Handle>,
     in_force: InForce,
@@ -110,7 +109,7 @@ struct Bench {
     read: Option<Screen>,
     wizards: Wizards,
     ticks: [Option<Tick>; SIDES],
-    /// What is in force after the last saving, line by line.
+    /// The active calibrations after the last saving, line by line.
     saved: Vec<String>,
     leave: Leave,
 }
@@ -125,7 +124,7 @@ impl Bench {
         Ok(this)
     }
 
-    /// Ends the loop and starts it again, idle, as the console does when a calibration is saved.
+    /// Ends the loop and restarts it idle, as the console does when a calibration is saved.
     fn restart(&mut self) -> anyhow::Result<()> {
         self.handle = None;
         self.in_force.bind(&self.plan.rig, &self.plan.scene);
@@ -146,7 +145,7 @@ impl Bench {
         let mut since = Instant::now();
         let saving = loop {
             if self.leave.is_asked() {
-                bail!("ended as asked; the calibrations that were finished are saved");
+                bail!("ended on request; the finished calibrations are saved");
             }
             self.look(side)?;
             let binding = self.binding();
@@ -179,21 +178,21 @@ impl Bench {
     fn wait(since: Instant, what: &str, step: &str, notice: Option<&str>) -> anyhow::Result<()> {
         if since.elapsed() > PATIENCE {
             bail!(
-                "{what}: \"{step}\" does not come to its end: {}",
-                notice.unwrap_or("the rig does not deliver what it needs")
+                "{what}: step \"{step}\" did not finish: {}",
+                notice.unwrap_or("the rig does not deliver the required data")
             );
         }
         thread::sleep(Duration::from_millis(2));
         Ok(())
     }
 
-    /// Why a device is not there.
+    /// Reason why a device is missing.
     fn missing(&self) -> Option<String> {
         let roster = self.handle.as_ref()?.roster();
         roster.iter().find_map(|entry| Some(format!("{}: {}", entry.name(), entry.view.report().trouble?)))
     }
 
-    /// Takes in what the loop has sent, and shows the technician what the wizard asks for.
+    /// Receives the data of the loop, and shows the wizard's instruction to the technician.
     fn look(&mut self, side: Side) -> anyhow::Result<()> {
         let Some(handle) = &self.handle else { bail!("the loop has ended") };
         if !handle.is_running() {

@@ -6,7 +6,7 @@ use clap::Subcommand;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum CheckCommand {
-    /// Go through the ready check of an emulated or simulated rig (about a minute), and keep its record
+    /// Run the ready check of an emulated or simulated rig (about a minute), and save its record
     Rig(rig::Arguments),
 }
 

@@ -1,8 +1,8 @@
 //! `nima check rig`: the ready check without a screen.
 //!
-//! The same list as in the console. What is asked for at the arms is done by the simulated technician of an emulated rig, who reads it,
-//! or by the simulated person of a scene; the stop and the releases go to the loop as those of the console do. A real rig is checked in
-//! the console, where a person presses its stop.
+//! The list is the same as in the console. The simulated technician of an emulated rig, or the simulated person of a scene,
+//! follows the instructions at the arms; stop and releases go to the loop as in the console. A real rig is checked in the
+//! console, where a person presses its stop.
 
 use std::{
     thread,
@@ -34,25 +34,25 @@ use crate::{
     words::{ask_words, cause_words, check_name, figure_words, lacks_words},
 };
 
-/// Force sensors tell who they are within this time, or are missing.
+/// Timeout for the serial numbers of the force sensors.
 const SENSORS_WITHIN: Duration = Duration::from_secs(15);
-/// Whoever sits at the screen obeys after this time.
+/// Response time of the simulated person at the screen.
 const ANSWERS_AFTER: Duration = Duration::from_millis(300);
-/// Scene of a simulated rig in which somebody is at the arm; at emulated arms he is in every scene.
+/// Scene of a simulated rig with a simulated person at the arm; emulated arms have one in every scene.
 const SIMULATED: &str = "correspondence";
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct Arguments {
-    /// Rig: built-in name or TOML file; it must be emulated or simulated
+    /// Rig: built-in name or TOML file; must be emulated or simulated
     #[arg(long, value_name = "RIG", default_value = "emulated")]
     rig: String,
-    /// Scene: built-in name or TOML file (default: one with somebody at the arm)
+    /// Scene: built-in name or TOML file (default: one with a simulated person at the arm)
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// Who checks; written into the record
+    /// Name of the person who checks, stored in the record
     #[arg(long, value_name = "NAME", default_value = "nima check rig")]
     by: String,
-    /// Print the record (JSON) in place of one line per point
+    /// Print the record (JSON) instead of one line per point
     #[arg(long)]
     json: bool,
 }
@@ -83,23 +83,22 @@ pub(in crate::command) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     end(&run, arguments, &roster)
 }
 
-/// Keeps and prints the record; an error if the rig is not ready.
+/// Saves and prints the record; returns an error if the rig is not ready.
 fn end(run: &Run, arguments: &Arguments, roster: &Roster) -> anyhow::Result<()> {
     let record = record(&run.session, &arguments.rig, &arguments.by, roster);
     let path = Store::of_user()?.save_check(&record)?;
     if arguments.json {
         output::json(&record)?;
     }
-    tell(format_args!("{:.0} s; the record is {}", record.took_s, path.display()));
+    tell(format_args!("{:.0} s; record saved in {}", record.took_s, path.display()));
     if record.passed {
         return Ok(());
     }
     let failed = run.session.list().iter().filter(|entry| matches!(entry.state, State::Failed(_)));
     let names: Vec<_> = failed.map(|entry| check_name(entry.check)).collect();
-    bail!("the rig is not ready: {}; {} says why and what to do", names.join(", "), path.display())
+    bail!("the rig is not ready: {}; see {} for causes and remedies", names.join(", "), path.display())
 }
 
-/// A point with its result in one line.
 fn line(entry: &Entry, roster: &Roster) -> String {
     let name = check_name(entry.check);
     match &entry.state {
@@ -109,11 +108,10 @@ fn line(entry: &Entry, roster: &Roster) -> String {
             let [cause, cure] = cause_words(cause, roster);
             format!("{name}: FAILED: {cause}; {cure}")
         }
-        State::LeftOut(lacks) => format!("{name}: left out, {}", lacks_words(*lacks)),
+        State::LeftOut(lacks) => format!("{name}: skipped, {}", lacks_words(*lacks)),
     }
 }
 
-/// The running loop and the technician.
 struct Bench {
     plan: Plan,
     handle: Handle,
@@ -127,16 +125,16 @@ struct Bench {
 impl Bench {
     fn may_go_on(&self) -> anyhow::Result<()> {
         if self.leave.is_asked() {
-            bail!("ended as asked; no record was made");
+            bail!("ended on request; no record was saved");
         }
         if !self.handle.is_running() {
-            bail!("the loop has ended; no record was made");
+            bail!("the loop has ended; no record was saved");
         }
         thread::sleep(Duration::from_millis(2));
         Ok(())
     }
 
-    /// Until it is known which calibrations are in force.
+    /// Waits until the active calibrations are known.
     fn await_sensors(&mut self) -> anyhow::Result<()> {
         let began = Instant::now();
         while self.in_force.is_waiting() && began.elapsed() < SENSORS_WITHIN {
@@ -178,7 +176,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Takes in what the loop has sent, and shows at the arms what is asked for.
+    /// Receives the data of the loop, and shows the instruction at the arms.
     fn look(&mut self, run: &mut Run) {
         self.handle.drain_ticks(|tick| {
             run.session.tick(tick);

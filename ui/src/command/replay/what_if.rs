@@ -1,4 +1,4 @@
-//! A session with one thing changed: how the forces would have been on the same inputs.
+//! A session with one changed setting: the forces that it would have rendered on the same inputs.
 
 use std::{
     fmt::Write as _,
@@ -15,13 +15,12 @@ use serde::Serialize;
 
 use super::{Opened, output};
 
-/// The file with the forces of both.
 const FORCES: &str = "forces.csv";
 const HEADER: &str = "t_s,side,recorded_state,changed_state,recorded_x_n,recorded_y_n,recorded_z_n,\
 changed_x_n,changed_y_n,changed_z_n,measured_x_n,measured_y_n,measured_z_n";
-/// What such a comparison cannot know.
-const LIMIT: &str = "the inputs are those of the recording: with another force the hand would have moved otherwise, and so would \
-the tissue's force; this is what the hand would have felt, had it moved as it did";
+/// Limit of such a comparison.
+const LIMIT: &str = "the inputs come from the recording: a different force would have changed the motion of the hand and the tissue \
+ force; these are the forces that the hand would have felt with the recorded motion";
 
 #[derive(Serialize)]
 struct Told<'a> {
@@ -122,7 +121,7 @@ fn with_forces(
                 }
             })
         });
-        // Half a table is none.
+        // An incomplete table is an error.
         let compared = answer.insert(compared).as_ref();
         compared.map_or_else(|_| Err(io::Error::other("the session cannot be replayed")), |_| written)
     });
@@ -156,7 +155,7 @@ fn table(told: &Told<'_>) -> String {
     for Arm { side, engaged_ticks, in_one_engaged_only, difference, recorded_error, changed_error } in arms {
         let apart = match in_one_engaged_only {
             0 => String::new(),
-            _ => format!(", {in_one_engaged_only} more in only one of both"),
+            _ => format!(", {in_one_engaged_only} more engaged in only one of the two"),
         };
         write!(text, "\n{side} arm, {engaged_ticks} ticks engaged{apart}").ok();
         text += &difference.in_words("rendered force, changed minus recorded");
@@ -164,7 +163,7 @@ fn table(told: &Told<'_>) -> String {
         text += &changed_error.in_words("changed, minus the force at the tip then");
     }
     if let Some(tick) = ends_at_hole_after_tick {
-        write!(text, "\nthe recording has a hole after tick {tick}: the comparison ends there").ok();
+        write!(text, "\nthe recording has a gap after tick {tick}: the comparison ends there").ok();
     }
     if let Some(forces) = forces {
         write!(text, "\nforces of both in {}", forces.display()).ok();

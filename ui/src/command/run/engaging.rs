@@ -1,14 +1,14 @@
-//! Engages by command, once all is known that the command line can know.
+//! Engages automatically, once all data that the command line can have are known.
 
 use nima_machine::{
     messages::{Event, Refusal},
     rig::Obstacle,
 };
 
-/// After a refusal because something had not been heard of yet, it asks again after this time, s.
+/// Time until the next request after a refusal for missing data, s.
 const AGAIN_S: f64 = 0.3;
 
-/// The one engagement of a run without a person.
+/// The single engagement of a run without a person.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Engaging {
     asked: bool,
@@ -16,12 +16,12 @@ pub(super) struct Engaging {
 }
 
 impl Engaging {
-    /// Somebody else engages, or nobody may.
+    /// Another part engages, or nothing may.
     pub(super) const fn left_to_others(others: bool) -> Self {
         Self { asked: others, again_s: None }
     }
 
-    /// Whether to ask for an engagement now (s on the loop's clock), if all is `ready`.
+    /// Whether to request an engagement now (s on the loop's clock), if everything is `ready`.
     pub(super) fn asks(&mut self, ready: bool, now_s: f64) -> bool {
         if self.again_s.take_if(|again_s| now_s >= *again_s).is_some() {
             self.asked = false;
@@ -31,7 +31,7 @@ impl Engaging {
         asks
     }
 
-    /// A device that comes later than the others, as a tracker does, is no reason to stay idle for good.
+    /// A device that starts later than the others, such as a tracker, must not leave the rig idle for the whole run.
     pub(super) fn hears(&mut self, event: &Event) {
         if let Event::CommandRefused { t_s, why: Refusal::Obstacle(Obstacle::Waiting(_)), .. } = event {
             self.again_s = Some(t_s + AGAIN_S);

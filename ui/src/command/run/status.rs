@@ -1,4 +1,4 @@
-//! What `nima run` tells on stderr while the loop runs: its state, and devices that cannot be opened.
+//! Status messages of `nima run` on stderr while the loop runs: its state, and devices that cannot be opened.
 
 use std::{
     io::{self, IsTerminal as _, Write as _},
@@ -43,7 +43,7 @@ impl Troubles {
         }
     }
 
-    /// The first missing device, with cause and cure.
+    /// The first missing device, with cause and remedy.
     pub(super) fn first(&self) -> Option<String> {
         let others = self.told.iter().flatten().count().saturating_sub(1);
         let more = if others > 0 { format!(" (and {others} more)") } else { String::new() };
@@ -63,7 +63,7 @@ impl StatusLine {
         Self { wanted, terminal: io::stderr().is_terminal(), last: None }
     }
 
-    /// Shows the present state; `missing` is the device that the loop is waiting for.
+    /// Shows the current state; `missing` is the device that the loop is waiting for.
     pub(super) fn show(&mut self, tick: &Tick, missing: Option<&str>) {
         let pause = Duration::from_millis(if self.terminal { 100 } else { 1000 });
         if !self.wanted || self.last.is_some_and(|last| last.elapsed() < pause) {
@@ -88,7 +88,7 @@ impl StatusLine {
 
     fn write(&self, text: &str) {
         let mut err = io::stderr().lock();
-        // The terminal truncates a line that is too long, and clears the rest of the previous one.
+        // The terminal cuts a line that is too long, and clears the rest of the previous one.
         let written =
             if self.terminal { write!(err, "\r\x1b[?7l{text}\x1b[K\x1b[?7h") } else { writeln!(err, "{text}") };
         written.and_then(|()| err.flush()).ok();

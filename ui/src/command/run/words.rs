@@ -1,11 +1,10 @@
-//! The figures of a run in words.
+//! The results of a run as text.
 
 use nima_core::statistics::Quantiles;
 use nima_devices::{Health, Standing};
 use nima_machine::runtime::{ArmEnd, CauseAndCure, DeviceFigures, Summary};
 use nima_simulation::Plan;
 
-/// The figures of a run, for a terminal.
 pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> String {
     let times =
         |q: &Quantiles| format!("p50 {:7.1}   p99 {:7.1}   p99.9 {:7.1}   max {:7.1}", q.p50, q.p99, q.p999, q.max);
@@ -41,7 +40,7 @@ pub(super) fn in_words(plan: &Plan, summary: &Summary, is_measured: bool) -> Str
         ends_in_words(summary),
     );
     if !summary.error.is_empty() {
-        text.push_str("\nerror of each mode before the gates, against the force at the tip at the same instant:");
+        text.push_str("\nerror of each mode before the gates, compared with the tip force at the same instant:");
     }
     for error in &summary.error {
         let fields = format!(

@@ -1,7 +1,7 @@
-//! Recent alarms: which are active, acknowledged, or over, and since when.
+//! Recent alarms with their states (active, acknowledged or ended) and times.
 //!
-//! An acknowledgement ends flashing and sound and is displayed; it does not end an alarm, only the end of its cause
-//! does. A new alarm of the same or a higher priority than those acknowledged flashes and sounds again.
+//! An acknowledgement ends flashing and sound and is displayed; the alarm itself ends only when its cause ends. A new alarm
+//! of the same or a higher priority than the acknowledged ones flashes and sounds again.
 
 use std::collections::VecDeque;
 
@@ -26,23 +26,19 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// The present time.
     pub fn now(loop_s: Option<f64>, window_s: f64) -> Self {
         let utc = utc_now().get(11..19).unwrap_or_default().to_owned();
         Self { utc, loop_s, window_s }
     }
 }
 
-/// One alarm with its times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Its latest state.
     pub alarm: Alarm,
-    /// When its cause appeared.
+    /// Time at which its cause appeared.
     pub began: Moment,
-    /// When its cause ended; `None` while it is active.
+    /// Time at which its cause ended; `None` while it is active.
     pub ended: Option<Moment>,
-    /// Whether it has been acknowledged.
     pub acknowledged: bool,
 }
 
@@ -53,7 +49,6 @@ pub struct AlarmLog {
 }
 
 impl AlarmLog {
-    /// Updates the log with the present alarms.
     pub fn update(&mut self, alarms: &[Alarm], now: &Moment) {
         let is_wrong = |kind: Kind| alarms.iter().find(|alarm| alarm.kind == kind);
         for entry in self.entries.iter_mut().filter(|entry| entry.ended.is_none()) {
@@ -91,12 +86,10 @@ impl AlarmLog {
         live
     }
 
-    /// All stored alarms, the newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().rev()
     }
 
-    /// Acknowledges all active alarms.
     pub fn acknowledge(&mut self) {
         self.entries.iter_mut().filter(|entry| entry.ended.is_none()).for_each(|entry| entry.acknowledged = true);
     }

@@ -1,5 +1,5 @@
-//! Alarms in order of urgency, each with cause and cure. They are determined anew in each frame, so an alarm ends
-//! exactly when its cause ends; [`log`] stores the recent ones, [`strip`] shows them, [`sound`] plays their sound.
+//! Alarms in order of urgency, each with cause and remedy. They are determined again in each frame, so an alarm ends exactly
+//! when its cause ends; [`log`] stores the recent ones, [`strip`] shows them, [`sound`] plays their sound.
 
 pub mod log;
 pub mod sound;
@@ -17,9 +17,9 @@ use crate::{console::text, words::Remedy as _};
 /// Urgency by IEC 60601-1-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Priority {
-    /// Act now. Red, flashing twice a second.
+    /// Act now. Red, flashing twice per second.
     High,
-    /// Act soon. Yellow, flashing every second and a half.
+    /// Act soon. Yellow, flashing every 1.5 s.
     Medium,
     /// For information. Cyan, steady.
     Low,
@@ -47,7 +47,7 @@ impl Priority {
         }
     }
 
-    /// Time until the colour changes next, s; `None` for a steady one.
+    /// Time until the next change of the colour, s; `None` for a steady one.
     pub fn until_change_s(self, time_s: f64) -> Option<f64> {
         let half_s = 0.5 / self.flash_hz()?;
         Some(half_s - time_s.rem_euclid(half_s))
@@ -63,7 +63,7 @@ impl Priority {
     }
 }
 
-/// Kind of an alarm: it stays the same alarm when its figures change.
+/// Kind of an alarm: an alarm whose figures change keeps its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A stop did not reach the loop.
@@ -80,16 +80,16 @@ pub enum Kind {
     BiasMoved,
     /// The operating system refused real-time privileges.
     Scheduling,
-    /// No ready check of today has passed.
+    /// No ready check has passed today.
     Unchecked,
-    /// Somebody at another machine asks something.
+    /// A user at another machine requests something.
     Question,
-    /// The session is not recorded, or will soon not be.
+    /// The session is not recorded, or soon will not be.
     Unrecorded,
 }
 
 impl Kind {
-    /// Whether a name that a person gave may be in its text, such as that of a folder.
+    /// Whether its text may contain a name given by a person, such as that of a folder.
     pub const fn has_names(self) -> bool {
         match self {
             Self::Device(_) | Self::Unrecorded => true,
@@ -105,48 +105,44 @@ impl Kind {
     }
 }
 
-/// One alarm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alarm {
-    /// Its kind.
     pub kind: Kind,
-    /// How urgent.
     pub priority: Priority,
-    /// What happened, and when, if that is known.
+    /// Cause, with its time if known.
     pub cause: String,
-    /// What the operator can do.
+    /// Remedy.
     pub cure: String,
 }
 
-/// A device that is wanted and does not deliver.
+/// A required device that does not deliver.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
-    /// Index in the roster.
     pub place: usize,
-    /// Its name there.
+    /// Its name in the roster.
     pub name: String,
     /// Whether it delivered before.
     pub was_there: bool,
-    /// Why it does not deliver.
+    /// Reason why it does not deliver.
     pub cause: String,
-    /// What the operator can do.
+    /// Remedy.
     pub cure: String,
 }
 
-/// The data from which alarms are determined.
+/// Input of the alarms.
 #[derive(Clone, Debug, Default)]
 pub struct Signs {
     /// Missing devices, in the order of the roster.
     pub missing: Vec<Missing>,
     /// State of the loop as last seen.
     pub state: Option<LoopState>,
-    /// The first fault since the last release, and when (s on the loop's clock).
+    /// The first fault since the last release, and its time (s on the loop's clock).
     pub first_fault: Option<(f64, Fault)>,
     /// Whether the loop's thread is running.
     pub running: bool,
     /// Time since the last tick.
     pub silence: Duration,
-    /// Share of periods missed in the last seconds, 0 to 1.
+    /// Fraction of periods missed in the last seconds, 0 to 1.
     pub missed_share: f64,
     /// Real-time privileges that the operating system granted, once known.
     pub scheduling: Option<Scheduling>,
@@ -154,17 +150,17 @@ pub struct Signs {
     pub stop_is_stuck: bool,
     /// Change of the wrist sensor's bias since its calibration, N; `None` if it has not changed.
     pub bias_moved_n: Option<f64>,
-    /// No ready check of today has passed on this rig.
+    /// No ready check has passed on this rig today.
     pub is_unchecked: bool,
-    /// Cause and cure of a question that comes over the line to another machine.
+    /// Cause and remedy of a request over the link to another machine.
     pub question: Option<[&'static str; 2]>,
-    /// Why the session is not recorded although it should be, or what will soon be in the way.
+    /// Reason why the session is not recorded although it should be, or a coming problem.
     pub unrecorded: Option<String>,
 }
 
 /// Ticks arrive every few milliseconds; half a second without one is an alarm.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
-/// More than one missed period in a hundred is felt as roughness.
+/// A hand feels more than one missed period in a hundred as roughness.
 const MISSED_SHARE_MAX: f64 = 0.01;
 
 /// All alarms, most urgent first.
@@ -196,7 +192,8 @@ pub fn judge(signs: &Signs) -> Vec<Alarm> {
     }
     alarms.extend(signs.missing.iter().map(missing));
     if signs.missed_share > MISSED_SHARE_MAX {
-        // While nothing is driven nobody can feel them, so they rank below the reasons why the arm cannot be engaged.
+        // While no side is driven, no hand can feel missed periods. They then rank below the reasons why the arm cannot be
+        // engaged.
         let driven = signs.state.is_none_or(|state| state.permits().drives);
         alarms.push(Alarm {
             kind: Kind::Missed,
@@ -260,7 +257,7 @@ fn missing(device: &Missing) -> Alarm {
     }
 }
 
-/// Cause of a fault, with the name of the device if it is about one.
+/// Cause of a fault, with the name of the device concerned.
 fn cause_of(fault: Fault, signs: &Signs) -> String {
     let Fault::DeviceLost { device, .. } = fault else { return fault.cause().to_owned() };
     let name = signs.missing.iter().find(|missing| missing.place == usize::from(device)).map(|missing| &missing.name);
@@ -310,7 +307,7 @@ mod tests {
             place: 1,
             name: "right arm".to_owned(),
             was_there: false,
-            cause: "nobody listens at 127.0.0.1:47100".to_owned(),
+            cause: "no response from 127.0.0.1:47100".to_owned(),
             cure: "Correct the port number in the rig file.".to_owned(),
         };
         let signs = Signs {

@@ -34,7 +34,6 @@ const RATE_HZ: u32 = 22_050;
 const HIGH_EVERY_S: f64 = 6.0;
 const MEDIUM_EVERY_S: f64 = 12.0;
 
-/// The player and its state.
 #[derive(Debug, Default)]
 pub struct Sound {
     player: Option<PathBuf>,
@@ -47,7 +46,7 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// Searches the players in these folders instead of the search path.
+    /// Searches for the players in these folders instead of the search path.
     #[cfg(all(test, unix))]
     fn of(folders: &[&Path]) -> Self {
         let mut sound = Self::default();
@@ -56,7 +55,7 @@ impl Sound {
         sound
     }
 
-    /// Why no sound can be played, for the menu; `None` if it can.
+    /// Reason why no sound can be played, for the menu; `None` if it can.
     pub fn trouble(&mut self) -> Option<String> {
         self.look();
         match (&self.player, &self.failure) {

@@ -1,6 +1,6 @@
-//! Display of alarms: a strip below the top bar while anything is wrong, and the list of recent alarms.
+//! Display of alarms: a strip below the top bar while any alarm is active, and the list of recent alarms.
 //!
-//! The strip shows the most urgent alarm (of several, the first) with time, cause and cure, and the number of the
+//! The strip shows the most urgent alarm (the first if several are equal) with time, cause and remedy, and the number of the
 //! others. It is as high as its text requires, so that nothing is cut off.
 
 use crate::console::text;
@@ -23,19 +23,17 @@ use crate::console::{
 const BUTTONS: f32 = 270.0;
 const BUTTON: egui::Vec2 = vec2(124.0, 32.0);
 
-/// The log of alarms, and what is open.
+/// The log of alarms, and the open parts of their display.
 #[derive(Debug, Default)]
 pub struct Alarms {
-    /// Recent alarms.
     pub log: AlarmLog,
     /// Whether the list is open.
     pub list: bool,
-    /// Plays the sounds.
     pub sound: Sound,
 }
 
 impl Alarms {
-    /// Updates the alarms, plays their sound if wanted, and shows the strip; `loop_s` is the time on the loop's clock.
+    /// Updates the alarms, plays their sound if enabled, and shows the strip; `loop_s` is the time on the loop's clock.
     pub fn strip_ui(&mut self, ui: &mut Ui, signs: &Signs, loop_s: Option<f64>, sounds: bool) {
         let time_s = ui.input(|input| input.time);
         self.log.update(&judge(signs), &Moment::now(loop_s, time_s));
@@ -119,11 +117,10 @@ fn words_ui(ui: &mut Ui, first: &Entry, others: usize, colour: Color32) -> bool 
         ui.add(Label::new(RichText::new(cause).font(theme::strong(14.0)).color(theme::DARK.text)).wrap());
         ui.add(Label::new(RichText::new(&alarm.cure).font(theme::regular(13.0)).color(theme::DARK.text_weak)).wrap());
     });
-    // Not reachable with the Tab key: the button beside it does the same.
+    // Not reachable with the Tab key: the button next to it does the same.
     ui.interact(words.response.rect, ui.scope_id().with("alarm"), Sense::CLICK).clicked()
 }
 
-/// One line of the list.
 fn entry_ui(ui: &mut Ui, entry: &Entry) {
     let Entry { alarm, began, ended, acknowledged } = entry;
     let ink = if ended.is_none() { theme::now().text } else { theme::now().text_weak };

@@ -1,4 +1,4 @@
-//! What a command does: the same for its menu, its button, its key and the palette.
+//! Effects of the commands: the same for menu, button, key and palette.
 
 use egui::{Context, Event, Rect};
 use nima_machine::messages::Command;
@@ -16,7 +16,7 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Does what was chosen in the palette and what keys say.
+    /// Runs the commands chosen in the palette or by keys.
     pub(super) fn obey_commands(&mut self, ctx: &Context) {
         let chosen = self.palette.take();
         let pressed = keys::pressed(ctx, |action| self.may(action) == Reach::Can);
@@ -28,7 +28,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The palette with all that can be reached from here.
+    /// The palette with all commands that are available here.
     pub(super) fn palette_ui(&mut self, ctx: &Context, room: Rect) {
         if self.palette.is_open() {
             let rows = table().iter().map(|entry| (entry, self.may(entry.action)));
@@ -38,14 +38,14 @@ impl ConsoleApp {
         }
     }
 
-    /// Does it, if it can be done.
+    /// Runs the command if it is available.
     pub(super) fn act(&mut self, action: Action, ctx: &Context) {
         if self.may(action) != Reach::Can {
             return;
         }
         match action {
             Action::Stop => self.outbox.push(Command::Stop),
-            // The button has the last word: it waits a moment after every change of state.
+            // The button decides: it waits a moment after every change of state.
             Action::Engage | Action::Release => self.top_bar.wants_step = Some(action),
             Action::View(role) => self.show_view(role),
             Action::Rig if self.start.is_open => self.close_pages(),
@@ -88,7 +88,7 @@ impl ConsoleApp {
         }
     }
 
-    /// What only changes the screen.
+    /// Commands that only change the screen.
     fn act_on_screen(&mut self, action: Action) {
         let settings = &mut self.settings.now;
         match action {
@@ -121,7 +121,7 @@ impl ConsoleApp {
         }
     }
 
-    /// What changes the views on the screen.
+    /// Commands that change the views.
     fn act_on_view(&mut self, action: Action) {
         let (live, panels) = match &mut self.past {
             Some(past) => (past.live.as_deref(), &mut past.panels),
@@ -139,7 +139,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The arrangement and the look of the screen, which can be taken back.
+    /// Layout and display settings, which can be undone.
     fn look(&self) -> Look {
         let Settings { layout, light, language, scale_percent, picture, .. } = &self.settings.now;
         let light = *light;
@@ -164,13 +164,13 @@ impl ConsoleApp {
         self.panels.forces.show(traces);
     }
 
-    /// At the end of a frame: what has changed on the screen can be taken back.
+    /// Records undoable changes at the end of a frame.
     pub(super) fn remember_look(&mut self, ctx: &Context) {
         let (time_s, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         self.history.watch(self.look(), time_s, held);
     }
 
-    /// A trial begins: what lies over the window is closed.
+    /// Closes windows that cover the view when a trial starts.
     pub(super) fn clear_for_trial(&mut self) {
         self.help = Help::default();
         self.top_bar.alarms.list = false;
@@ -178,7 +178,7 @@ impl ConsoleApp {
     }
 }
 
-/// The part of the window that reads it finds its key pressed.
+/// Simulates the key press for the part of the window that reads the key itself.
 fn press_key_of(action: Action, ctx: &Context) {
     let Some(stroke) = Entry::of(action).and_then(|entry| entry.keys.first()) else { return };
     let event = Event::Key {

@@ -20,12 +20,12 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Opens a wizard; a simulated rig changes to its scene, in which a simulated person guides the arm. At the arm of a rig
-    /// with devices is a technician.
+    /// Opens a wizard. A simulated rig changes to the wizard's scene, in which a simulated person guides the arm; the arm of
+    /// a rig with devices has a technician.
     pub(super) fn open_wizard(&mut self, which: Which) {
         let side = self.in_force.side();
         let Some(scene) = which.scene().filter(|_| self.live.rig.devices.is_none()) else {
-            // A simulated rig has no arm of joints: the wizard says so.
+            // A simulated rig has no arm with joints: the wizard reports it.
             let rests = matches!(self.live.state(), LoopState::Idle | LoopState::Disconnected)
                 || self.live.rig.devices.is_none();
             let rig = self.live.rig.clone();
@@ -88,10 +88,10 @@ impl ConsoleApp {
         self.wizards = self.wizards.open.map_or_else(Wizards::default, Wizards::at);
     }
 
-    /// Saves a calibration and puts it in force.
+    /// Saves a calibration and activates it.
     pub(super) fn save(&mut self, saving: Saving) {
         let saved = self.saved(saving);
-        // Before the new start, after which the sensor must be opened first.
+        // Read before the restart: afterwards the sensor must be opened first.
         let following = saved.as_ref().ok().and_then(|(rig, _)| self.following(rig));
         let told = match saved {
             Ok((rig, words)) => match self.restart(rig, self.live.scene.clone()) {
@@ -103,14 +103,14 @@ impl ConsoleApp {
         self.wizards.tell_saved(told, following);
     }
 
-    /// What is to be done after the calibration that is open, on this rig; a simulated one needs no ready check.
+    /// The step after the open calibration on this rig; a simulated rig needs no ready check.
     fn following(&self, rig: &RigConfig) -> Option<GoOn> {
         let arms = overview(&self.in_force, rig, &self.running.rig);
         let wanted = following(&arms, self.wizards.wanted(self.in_force.side()));
         wanted.map(GoOn::Calibrate).or(rig.devices.as_ref().map(|_| GoOn::Check))
     }
 
-    /// Opens the wizard of this calibration, at its arm.
+    /// Opens the wizard of this calibration, for its arm.
     pub(super) fn open_wanted(&mut self, wanted: Wanted) {
         if wanted.side != self.in_force.side() {
             self.obey_calibrations(Some(CalibrationWish::Choose(wanted.side)));
@@ -119,7 +119,7 @@ impl ConsoleApp {
         self.obey_calibrations(Some(CalibrationWish::Open(wanted.which)));
     }
 
-    /// Saves; returns the rig as it is now, and a text for the screen.
+    /// Saves; returns the new rig and a text for the screen.
     fn saved(&mut self, saving: Saving) -> Result<(RigConfig, String), String> {
         let (rig, path, words) = match saving {
             Saving::Frame(saving) => self.in_force.save_frame(*saving, &self.running.rig, self.settings.folder())?,
@@ -163,7 +163,7 @@ impl ConsoleApp {
         self.in_force.binding_of(&self.running.rig, &self.live.rig, roster)
     }
 
-    /// The technician's view with one wizard, the calibrations in force, and the button to return.
+    /// The Technician view with one wizard, the active calibrations, and the button to return.
     pub(super) fn wizard_layout(&mut self, ui: &mut Ui) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;

@@ -1,4 +1,4 @@
-//! The console while the page of the ready check is open: goes through the list, shows what is asked for at the arms, keeps the record.
+//! The console while the page of the ready check is open: runs the check, shows instructions at the arms, saves the record.
 
 use std::time::{Duration, Instant, SystemTime};
 
@@ -20,23 +20,22 @@ use crate::console::{
     widgets::card,
 };
 
-/// The scene in which somebody stands at a simulated arm.
+/// The scene with a simulated person at the arm.
 const SCENE: &str = "correspondence";
-/// Force sensors that have not told who they are by then are missing.
+/// Timeout for the serial numbers of the force sensors.
 const SENSORS_WITHIN: Duration = Duration::from_secs(15);
-/// Whether there is a valid check is looked at so often.
+/// Interval at which the existence of a valid check is tested.
 const LOOK_EVERY: Duration = Duration::from_secs(5);
 
-/// The ready check.
 #[derive(Debug, Default)]
 pub(super) struct Checking {
-    /// Since when its page is open.
+    /// Time at which its page was opened.
     open: Option<Instant>,
     run: Option<Run>,
     by: String,
-    /// Where the record is, or why there is none.
+    /// Path of the record, or the reason why it was not saved.
     saved: Option<String>,
-    /// Whether a check of today exists for these devices, and when that was looked at.
+    /// Whether a check of today exists for these devices, and the time of this test.
     valid: Option<(bool, Instant)>,
 }
 
@@ -49,12 +48,12 @@ impl Checking {
         self.run.as_mut()
     }
 
-    /// What the check asks for.
+    /// Current instruction of the check.
     pub(super) fn ask(&self) -> Option<Ask> {
         self.run.as_ref().map(|run| run.session.ask())
     }
 
-    /// Another loop is started: what was found out belongs to the one before.
+    /// Discards the results, because they belong to the previous loop.
     pub(super) fn forget(&mut self) {
         self.begin_anew();
         self.valid = None;
@@ -67,7 +66,7 @@ impl Checking {
 }
 
 impl ConsoleApp {
-    /// Opens the page; a simulated rig changes to a scene with somebody at the arm.
+    /// Opens the page; a simulated rig changes to a scene with a person at the arm.
     pub(super) fn open_check(&mut self) {
         self.wizards.open = None;
         self.listing.close();
@@ -93,7 +92,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Closes the page; what was not reached is not kept.
+    /// Closes the page; unfinished points are discarded.
     pub(super) fn close_check(&mut self) {
         self.checking.open = None;
         self.checking.begin_anew();
@@ -103,7 +102,6 @@ impl ConsoleApp {
         self.door.as_ref().map_or_else(Roster::new, |door| door.handle().roster().clone())
     }
 
-    /// Goes through the list.
     pub(super) fn go_on_checking(&mut self) {
         self.look_for_a_check();
         let Some(since) = self.checking.open else { return };
@@ -141,7 +139,7 @@ impl ConsoleApp {
         self.checking.valid = None;
     }
 
-    /// Whether a passed check of today exists; a simulated rig needs none.
+    /// Tests whether a passed check of today exists; a simulated rig needs none.
     fn look_for_a_check(&mut self) {
         if self.live.rig.devices.is_none() || self.checking.valid.is_some_and(|(_, at)| at.elapsed() < LOOK_EVERY) {
             return;
@@ -155,7 +153,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The page beside the calibrations in force.
+    /// The page next to the active calibrations.
     pub(super) fn check_layout(&mut self, ui: &mut Ui) {
         let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
         let mut wish = None;

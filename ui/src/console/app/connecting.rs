@@ -1,4 +1,4 @@
-//! Other devices for the rig in use: the rig file is changed and written, and the machine starts again with it, idle.
+//! Changes the devices of the rig in use: writes the rig file and restarts the machine idle.
 
 use std::path::{Path, PathBuf};
 
@@ -13,9 +13,9 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Changes the rig file and starts the machine again; tells on the panel what was done, or why not.
+    /// Changes the rig file and restarts the machine; shows the result or the reason for a refusal on the panel.
     pub(super) fn connect(&mut self, change: &Change) {
-        // The newest state counts: somebody may have engaged since the panel was drawn.
+        // The newest state counts: a side may have been engaged since the panel was drawn.
         self.take_in();
         let told = match why_not_to_change(&self.live, self.starting.is_some()) {
             Some(reason) => Err(reason.to_owned()),
@@ -32,7 +32,6 @@ impl ConsoleApp {
     }
 }
 
-/// A rig file that was written.
 #[derive(Debug)]
 struct Written {
     path: PathBuf,
@@ -40,7 +39,7 @@ struct Written {
     undo: Undo,
 }
 
-/// Writes the changed rig: in its own file, or in a new one in `folder` if it is built in.
+/// Writes the changed rig to its own file, or to a new one in `folder` if it is built in.
 fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, String> {
     let mut file = RigFile::of(rig).map_err(|error| chain(&error))?;
     let before = file.text();
@@ -50,7 +49,7 @@ fn write(folder: Option<&Path>, rig: &str, change: &Change) -> Result<Written, S
     }
     let changed = file.rig().map_err(|error| chain(&error))?;
     let is_built_in = RigConfig::names().any(|name| name == rig);
-    // A file of the user's needs no folder.
+    // A user's file needs no folder.
     let folder = if is_built_in { folder.ok_or(text::start::NO_FOLDER.get())? } else { Path::new("") };
     let (path, new_name) = own_copy(&changed, rig, &folder.join("rigs"));
     if let Some(new_name) = new_name {

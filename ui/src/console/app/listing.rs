@@ -13,10 +13,10 @@ use crate::console::{
     widgets::card,
 };
 
-/// The list is made again so often: another one may be saved, or a sensor come.
+/// Update interval of the list: a calibration may be saved, or a sensor may connect.
 const AGAIN_EVERY: Duration = Duration::from_secs(2);
 
-/// The list while its page is open, and when it was made.
+/// The list while its page is open, and its update time.
 #[derive(Debug, Default)]
 pub(super) struct Listing(Option<(Vec<OfArm>, Instant)>);
 
@@ -31,7 +31,7 @@ impl Listing {
 }
 
 impl ConsoleApp {
-    /// Makes the list and opens its page; the loop goes on.
+    /// Builds the list and opens its page; the loop continues.
     pub(super) fn open_listing(&mut self) {
         self.close_check();
         self.wizards.open = None;
@@ -39,7 +39,7 @@ impl ConsoleApp {
         self.listing.0 = Some((arms, Instant::now()));
     }
 
-    /// The page beside the calibrations in force.
+    /// The page next to the active calibrations.
     pub(super) fn listing_layout(&mut self, ui: &mut Ui) {
         if self.listing.0.as_ref().is_some_and(|(_, at)| at.elapsed() > AGAIN_EVERY) {
             self.open_listing();

@@ -1,4 +1,4 @@
-//! What a console is given when it is opened: options, settings, calibrations.
+//! Inputs of a console when it is opened: options, settings, calibrations.
 
 use std::path::Path;
 
@@ -38,12 +38,12 @@ impl ConsoleApp {
         self
     }
 
-    /// The window's thread has the language of the settings; what is told without a window stays English.
+    /// The window's thread uses the language of the settings; messages outside the window stay English.
     pub(super) fn use_language(&self) {
         language::set(self.settings.now.language);
     }
 
-    /// When the process is asked to end, the loop ends at once, even if the window is blocked, and then the window.
+    /// When the end of the process is requested, the loop ends at once, even if the window is blocked, and then the window.
     pub(super) fn leave_when_asked(&self) {
         let Some(door) = &self.door else { return };
         let ender = door.handle().ender();
@@ -62,7 +62,7 @@ impl ConsoleApp {
             self.in_force.tell(format!("{told}."));
         }
         if settings.is_first_run() {
-            // Of what is simulated behind it the first page speaks; whoever names a rig of devices knows what this is.
+            // The first page is about the simulated rig; a user who names a rig with devices does not need it.
             if self.live.rig.devices.is_none() {
                 self.start.welcome.open();
             } else {
@@ -75,21 +75,21 @@ impl ConsoleApp {
         self
     }
 
-    /// Goes on with the recording of the loop that runs, and records the loops after it.
+    /// Continues the recording of the running loop, and records later loops.
     #[must_use]
     pub(crate) fn with_sessions(mut self, sessions: Sessions) -> Self {
         self.sessions = sessions;
         self
     }
 
-    /// The simulated rig tells here of the objects of its scene.
+    /// Source of the simulated rig's objects.
     #[must_use]
     pub fn with_objects(mut self, objects: Option<Watched>) -> Self {
         self.objects = objects;
         self
     }
 
-    /// The arm is at another machine: shows what is told of the line there, and opens it again for every loop that starts anew.
+    /// The arm is at another machine: shows the state of the link, and reopens it for every loop that restarts.
     #[must_use]
     pub(crate) fn with_line(mut self, far: Option<(Box<dyn LineDoor>, Reopen)>) -> Self {
         if let Some((door, reopen)) = far {
@@ -128,7 +128,7 @@ impl ConsoleApp {
         self
     }
 
-    /// Does what the command line asked for at this time: screenshots, a stall, the end.
+    /// Runs the timed options of the command line: screenshots, a stall, the end.
     pub(super) fn obey_options(&mut self, ctx: &egui::Context) {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = self.options.clone();

@@ -14,9 +14,9 @@ use crate::{
     telling::tell,
 };
 
-/// Interval between frames while data arrive: about thirty a second.
+/// Interval between frames while data arrive: about thirty per second.
 const FRAME: Duration = Duration::from_millis(31);
-/// Least pause between two frames, in which input is handled however slow drawing is.
+/// Minimum pause between two frames, in which input is handled however slow drawing is.
 const LEAST_REST: Duration = Duration::from_millis(1);
 /// Interval between frames while nothing is engaged, for the clocks; changes, mouse and keyboard still cause a frame at
 /// once.
@@ -29,8 +29,8 @@ const SCREENSHOT_AT: Duration = Duration::from_secs(3);
 const SCREENSHOT_BEFORE_EXIT: Duration = Duration::from_millis(700);
 
 impl ConsoleApp {
-    /// Requests the next frame: soon if something moves, otherwise when something changes by itself. News from the loop
-    /// wakes the window in between.
+    /// Requests the next frame: soon if something moves, otherwise at the next scheduled change. Data from the loop wake the
+    /// window in between.
     pub(super) fn rest(&mut self, ctx: &egui::Context) {
         let moves = !(self.live.state().is_latched() || self.live.state() == LoopState::Idle);
         let asks = self.wizards.open.is_some() || self.checking.is_open();
@@ -47,8 +47,8 @@ impl ConsoleApp {
         let next = if self.calm {
             self.until_change()
         } else {
-            // Measured from the start of this frame, so that its own duration counts. Pictures of an endoscope wake the window themselves: a
-            // frame of its own just before each of them would be drawn for nothing.
+            // Measured from the start of this frame, so that its own duration counts. Endoscope images wake the window
+            // themselves; an extra frame just before each of them would be wasted.
             let frame =
                 if self.role() == Role::Surgeon && self.panels.eyes.wakes() { FRAME + FRAME / 2 } else { FRAME };
             frame.saturating_sub(self.framed.elapsed()).max(LEAST_REST)
@@ -56,7 +56,7 @@ impl ConsoleApp {
         ctx.request_repaint_after(next);
     }
 
-    /// Whether this frame of a window at rest is only for a flashing alarm: then nothing else is updated.
+    /// Whether this frame of an idle window is only for a flashing alarm: then nothing else is updated.
     pub(super) fn only_flashes(&mut self, ctx: &egui::Context) -> bool {
         let Some(door) = self.door.as_ref().filter(|_| self.calm) else { return false };
         let wanted = door.has_woken() || ctx.input(|input| !input.events.is_empty() || input.pointer.any_down());
@@ -67,8 +67,8 @@ impl ConsoleApp {
         true
     }
 
-    /// Time until something changes in a window at rest: the clocks, or a request of the command line. A flashing alarm
-    /// requests its own frames.
+    /// Time until the next change in an idle window: the clocks, or a request of the command line. A flashing alarm requests
+    /// its own frames.
     fn until_change(&self) -> Duration {
         let open = self.opened.elapsed();
         let Options { exit_after, screenshot, .. } = &self.options;
@@ -77,7 +77,7 @@ impl ConsoleApp {
         wanted.fold(BEAT_AT_REST.saturating_sub(self.taken.elapsed()), Duration::min).max(LEAST_REST)
     }
 
-    /// When the requested screenshot is taken.
+    /// Time of the requested screenshot.
     pub(super) fn picture_at(&self) -> Duration {
         self.options.exit_after.map_or(SCREENSHOT_AT, |exit| exit.saturating_sub(SCREENSHOT_BEFORE_EXIT))
     }
@@ -97,7 +97,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Writes the figures of the loop and of the window to files, if requested.
+    /// Writes the results of the loop and of the window to files, if requested.
     pub(super) fn write_figures(&mut self) {
         if let (Some(path), Some(meter)) = (&self.options.frames, &self.meter) {
             write_json(path, &meter.figures(&self.renderer));

@@ -1,6 +1,6 @@
-//! The console while a page of an extra is open: its rig runs idle between the runs, and a run has a loop of its own.
+//! The console while a page of an extra is open: its rig runs idle between the runs, and each run has its own loop.
 //!
-//! The console's own recorder rests as long: a session holds the mode. What a page wants to keep it keeps itself.
+//! The console's own recorder pauses meanwhile, because a session contains the mode. The page saves its own data.
 
 use egui::Ui;
 use nima_machine::{config::RigConfig, messages::LoopState};
@@ -15,7 +15,7 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Whether a run of a page goes on: then the window shows nothing else.
+    /// Whether a run of a page is in progress: then the window shows nothing else.
     pub fn in_trial(&self) -> bool {
         self.run().is_some()
     }
@@ -24,7 +24,6 @@ impl ConsoleApp {
         self.page.as_ref().and_then(|page| page.run())
     }
 
-    /// Whether a page holds the machine.
     pub(super) fn is_held(&self) -> bool {
         self.page.as_ref().is_some_and(|page| page.holds_machine())
     }
@@ -43,7 +42,8 @@ impl ConsoleApp {
         if self.is_page_shown() { self.hide_page() } else { self.open_page() }
     }
 
-    /// Shows the page. What the screen does to the machine by itself, a demonstration or leading by mouse, ends before.
+    /// Shows the page. First ends everything that the screen does to the machine automatically: a demonstration, or mouse
+    /// control.
     pub(super) fn open_page(&mut self) {
         let Some(page) = &mut self.page else { return };
         self.panels.demo.leave(&mut self.outbox);
@@ -69,14 +69,14 @@ impl ConsoleApp {
         };
         let closed = self.page.as_mut().and_then(|page| page.ui(ui, room));
         self.sessions.rest(self.is_held());
-        // The rig that ran before runs again.
+        // The previous rig runs again.
         if let Some(Closed(Some(before))) = closed {
             let now = self.running.clone();
             self.begin(before, Some(now), None);
         }
     }
 
-    /// Goes on with what a page asks of the loop. A stop or a fault that is latched keeps its loop until it is released.
+    /// Continues the page's requests to the loop. A latched stop or fault keeps its loop until it is released.
     pub(super) fn go_on_with_page(&mut self) {
         let Some(page) = &mut self.page else { return };
         let has_ended = self.door.as_ref().is_some_and(|door| !door.handle().is_running());
@@ -99,7 +99,7 @@ impl ConsoleApp {
                 let before = self.running.clone();
                 self.begin(choice, Some(before), None);
                 if self.starting.is_none() {
-                    // The start page has the cause, which is told there when it is opened.
+                    // The start page shows the cause when it is opened.
                     self.tell_page(self.start.told().map(str::to_owned));
                 }
             }
@@ -112,7 +112,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The loop begins anew for the run, whose conditions nothing but the loop is told.
+    /// Restarts the loop for the run; only the loop receives its conditions.
     fn begin_run(&mut self) -> Result<(), String> {
         self.take_in();
         if let Some(why) = text::calibrations::closed(self.live.state()) {
@@ -122,7 +122,7 @@ impl ConsoleApp {
         let Prepared { rig, scene, is_by_mouse } = page.prepare()?;
         self.panels.scene.be_of_participant(true, is_by_mouse);
         self.clear_for_trial();
-        // End the old loop first: a rig must have one controller only.
+        // End the old loop first: a rig must have only one controller.
         drop(self.door.take());
         self.sessions.end();
         let started = rig.and_then(|rig| self.start_loop(rig, scene).ok());
@@ -139,7 +139,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Ends the loop of the run, lets the page write down how it ended, and starts its rig again, idle, as its file has it.
+    /// Ends the loop of the run, lets the page record the result, and restarts its rig idle, with the settings of its file.
     fn end_run(&mut self, again: bool) {
         self.panels.scene.let_go(&mut self.outbox);
         self.panels.scene.be_of_participant(false, false);
@@ -160,7 +160,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The window is closed: a run that goes on is written down as broken off.
+    /// When the window closes, an unfinished run is recorded as aborted.
     pub(super) fn leave_page(&mut self) {
         if self.in_trial() {
             self.break_off(Broken::Closed);

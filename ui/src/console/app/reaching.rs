@@ -1,4 +1,4 @@
-//! Whether a command can be done now, by who sits before the screen, and if not, why.
+//! Availability of each command for the person at this screen, with the reason if it is not available.
 
 use nima_machine::messages::LoopState;
 
@@ -12,7 +12,7 @@ use crate::console::{
     wizards::Which,
 };
 
-/// What is below the top bar.
+/// Content below the top bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Page {
     Trial,
@@ -27,7 +27,6 @@ pub(super) enum Page {
 }
 
 impl ConsoleApp {
-    /// The page that is shown.
     pub(super) fn page(&self) -> Page {
         if self.in_trial() {
             Page::Trial
@@ -50,12 +49,11 @@ impl ConsoleApp {
         }
     }
 
-    /// A person guides the arm, or a study is open: views stay, and the arm cannot be engaged.
+    /// A person guides the arm, or a study is open: the views are locked, and the arm cannot be engaged.
     pub(super) fn is_calibrating(&self) -> bool {
         self.wizards.open.is_some() || self.checking.is_open() || self.is_held() && !self.in_trial()
     }
 
-    /// Whether this can be done now, and by who sits here.
     pub(super) fn may(&self, action: Action) -> Reach {
         if self.in_trial() && !action.is_of_participant() {
             return Reach::Absent;
@@ -116,14 +114,14 @@ impl ConsoleApp {
         } else if self.is_calibrating() {
             Some(text::start::OPEN_DISABLED_HOVER.get())
         } else {
-            // The page itself tells how far it has come.
+            // The page itself shows its progress.
             let may_look = action == Action::Rig && !self.start.is_open;
             (self.starting.is_some() && !may_look).then_some(text::commands::IS_STARTING.get())
         };
         Reach::unless(why)
     }
 
-    /// As the panel of calibrations has it, which is the technician's and beside the wizards.
+    /// As on the Calibration panel, which is in the Technician view and next to the wizards.
     fn may_calibrate(&self, action: Action) -> Reach {
         let page = self.page();
         let is_beside = matches!(page, Page::Check | Page::Listing | Page::Wizard);
@@ -151,7 +149,7 @@ impl ConsoleApp {
         Reach::unless(why).only_if(is_offered && (is_beside || of_technician))
     }
 
-    /// Traces and field are in the technician's and the demonstration's view.
+    /// Traces and field are in the Technician and Demo views.
     fn may_draw(&self, action: Action) -> Reach {
         let is_here = self.role() != Role::Surgeon && self.panels_in_view().is_some();
         let of_technician = self.role() == Role::Technician;
@@ -202,7 +200,7 @@ impl ConsoleApp {
         Reach::unless(why).only_if(is_offered && is_here)
     }
 
-    /// The panels of the views that are on the screen: of the machine, or of the past.
+    /// The panels of the views on the screen: of the machine, or of the recorded session.
     fn panels_in_view(&self) -> Option<&Panels> {
         match (self.page(), &self.past) {
             (Page::Past, Some(past)) if past.beside.is_none() && !self.list.is_open => Some(&past.panels),

@@ -1,6 +1,6 @@
-//! The console while the past is shown: the list of sessions, and one that is open.
+//! The console during playback: the list of sessions, and an open one.
 //!
-//! The machine runs on, its alarms are told and its stop works; nothing else on the screen reaches it.
+//! The machine keeps running, its alarms are shown and its stop works; no other control reaches it.
 
 use std::path::Path;
 
@@ -16,43 +16,43 @@ use crate::console::{
 };
 
 impl ConsoleApp {
-    /// Shows this session; the machine runs on.
+    /// Shows this session; the machine keeps running.
     #[must_use]
     pub fn with_session(mut self, session: &Path) -> Self {
         self.open_past(session);
         self
     }
 
-    /// The session on the screen, and the time of it, s.
+    /// The session on the screen, and its time, s.
     pub fn past(&self) -> Option<(&Path, f64)> {
         self.past.as_ref().map(|past| (past.path.as_path(), past.shown_s()))
     }
 
-    /// The session beside it, and the time of that one, s.
+    /// The session that it is compared with, and its time, s.
     pub fn past_beside(&self) -> Option<(&Path, f64)> {
         let beside = self.past.as_ref()?.beside.as_ref().filter(|beside| beside.live.is_some())?;
         Some((beside.path.as_path(), beside.shown_s()))
     }
 
-    /// The ticks of the past on the screen, once every figure is as it was.
+    /// The recorded ticks on the screen, once all figures are replayed.
     pub fn past_ticks(&self) -> Option<&[Option<nima_machine::messages::Tick>]> {
         let past = self.past.as_ref().filter(|past| past.is_whole())?;
         past.live.as_ref().map(|live| live.ticks.as_slice())
     }
 
-    /// The objects of the past on the screen.
+    /// The recorded objects on the screen.
     pub fn past_objects(&self) -> Option<&nima_session::objects::Objects> {
         self.past.as_ref()?.live.as_ref()?.objects.as_ref()
     }
 
-    /// Shows this time of the session on the screen, s.
     pub fn show_past(&mut self, t_s: f64) {
         if let Some(past) = &mut self.past {
             past.show(t_s);
         }
     }
 
-    /// Opens a session. What the screen does to the machine by itself, a demonstration or leading by mouse, ends before.
+    /// Opens a session. First ends everything that the screen does to the machine automatically: a demonstration, or mouse
+    /// control.
     pub(super) fn open_past(&mut self, session: &Path) {
         self.panels.demo.leave(&mut self.outbox);
         self.panels.scene.let_go(&mut self.outbox);
@@ -62,13 +62,12 @@ impl ConsoleApp {
         self.past = Some(Past::open(session, &self.ctx, self.panels.scene.twin()));
     }
 
-    /// The screen shows the machine again.
     pub(super) fn close_past(&mut self) {
         self.past = None;
         self.list.is_open = false;
     }
 
-    /// The past is played on by this time.
+    /// Advances playback by this time.
     pub(super) fn go_on_in_past(&mut self, dt_s: f64) {
         if let Some(past) = &mut self.past {
             past.step(dt_s, self.live.state().permits().drives);
@@ -90,7 +89,7 @@ impl ConsoleApp {
         }
     }
 
-    /// The same views as of the machine, in a frame of their own colour.
+    /// The same views as for the machine, in a frame with its own colour.
     pub(super) fn past_layout(&mut self, ui: &mut Ui) {
         let Some(past) = &mut self.past else { return };
         let room = ui.available_rect_before_wrap();
@@ -116,7 +115,7 @@ impl ConsoleApp {
             live.rough_edges = self.live.rough_edges;
             past.panels.scene.smooth = smooth;
             past.panels.eyes.show_as(self.settings.now.picture);
-            // What the views wish for the machine is left undone.
+            // Commands of the views for the machine are discarded.
             role_ui(ui, &mut self.settings.now, live, &mut past.panels, &past.in_force, &mut past.outbox);
             past.outbox.forget();
         });

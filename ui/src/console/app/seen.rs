@@ -1,4 +1,4 @@
-//! What the window shows, for who asks it.
+//! State of the window, for tests and callers.
 
 use nima_machine::{config::RigConfig, messages::Tick};
 use nima_session::objects::Objects;
@@ -12,7 +12,6 @@ impl ConsoleApp {
         &mut self.settings.now
     }
 
-    /// The present role.
     pub const fn role(&self) -> Role {
         self.settings.now.role
     }
@@ -22,7 +21,7 @@ impl ConsoleApp {
         self.live.first_tick()
     }
 
-    /// What the simulation told last of the objects of its scene.
+    /// The last report of the simulation about the objects of its scene.
     pub const fn objects(&self) -> Option<&Objects> {
         self.live.objects.as_ref()
     }
@@ -32,7 +31,7 @@ impl ConsoleApp {
         &self.live.rig
     }
 
-    /// Whether the trade-off panel has figures.
+    /// Whether the Trade-off panel has results.
     pub fn is_tradeoff_measured(&self) -> bool {
         self.panels.tradeoff.as_ref().is_some_and(|tradeoff| tradeoff.is_measured())
     }
@@ -47,7 +46,7 @@ impl ConsoleApp {
         self.panels.forces.view().view_s
     }
 
-    /// Shows so many seconds in the traces, for tests.
+    /// Sets the time span of the traces, for tests.
     pub fn show_traces(&mut self, seconds: f64) {
         self.panels.forces.show_last(seconds);
     }
@@ -57,7 +56,6 @@ impl ConsoleApp {
         self.live.marks_s.iter().copied()
     }
 
-    /// The calibrations in force.
     pub fn in_force(&self) -> &InForce {
         &self.in_force
     }

@@ -1,4 +1,5 @@
-//! The console while it changes to another rig or scene: ends the loop, starts the emulators if there are any, starts the loop again, idle.
+//! The console while it changes to another rig or scene: ends the loop, starts the emulators if needed, and restarts the loop
+//! idle.
 
 use std::{
     path::PathBuf,
@@ -29,24 +30,24 @@ pub(super) struct Starting {
     rig: RigConfig,
     scene: Scene,
     emulators: Receiver<Result<Option<Emulators>, String>>,
-    /// What ran before, to go back to if this fails.
+    /// The previous rig and scene, to return to if the start fails.
     before: Option<Choice>,
-    /// Why it is started again, if it is what ran before.
+    /// Reason for the restart, if the rig stays the same.
     because: Option<String>,
-    /// What to write back if it does not start.
+    /// File to write back if the start fails.
     undo: Option<Undo>,
 }
 
-/// A rig file as it was before it was changed.
+/// A rig file before its change.
 #[derive(Debug)]
 pub(super) struct Undo {
     pub(super) path: PathBuf,
-    /// Its text; `None` if it was not there.
+    /// Its text; `None` if it did not exist.
     pub(super) text: Option<String>,
 }
 
 impl Undo {
-    /// Makes the file what it was. If that fails, the next start tells what is wrong with it.
+    /// Restores the file. If that fails, the next start reports the problem.
     pub(super) fn take_back(&self) {
         match &self.text {
             Some(text) => nima_files::write_atomically(&self.path, |file| file.write_all(text.as_bytes())).ok(),
@@ -56,7 +57,7 @@ impl Undo {
 }
 
 impl ConsoleApp {
-    /// This rig and this scene run, on these emulators if it is an emulated rig.
+    /// This rig and scene are running, with these emulators for an emulated rig.
     #[must_use]
     pub(crate) fn with_choice(mut self, running: Choice, emulators: Option<Emulators>) -> Self {
         self.running = running;
@@ -71,26 +72,26 @@ impl ConsoleApp {
         self
     }
 
-    /// The rig of this name or path runs.
+    /// The rig of this name or path is running.
     #[must_use]
     pub fn with_rig_name(mut self, rig: impl Into<String>) -> Self {
         self.running.rig = rig.into();
         self
     }
 
-    /// From now on these emulators serve the loop, and their technician reads the screen.
+    /// From now on these emulators serve the loop, and their technician follows the screen.
     fn serve(&mut self, emulators: Option<Emulators>) {
         self.reader = emulators.as_ref().map(Emulators::technician);
         self.read = None;
         self.emulators = emulators;
     }
 
-    /// What runs: a rig and a scene.
+    /// The running rig and scene.
     pub const fn running(&self) -> &Choice {
         &self.running
     }
 
-    /// Over a view, a newcomer chooses between what runs, the demonstration and a rig of their own.
+    /// Over a view, lets a newcomer choose the running rig, the demonstration, or their own rig.
     pub(super) fn welcome(&mut self, ctx: &egui::Context, room: egui::Rect) {
         let covers = self.start.is_open || self.list.is_open || self.past.is_some() || self.is_held();
         if covers || self.wizards.open.is_some() || self.checking.is_open() {
@@ -102,7 +103,7 @@ impl ConsoleApp {
             Some(Way::Demo) => self.settings.now.role = Role::Demo,
             Some(Way::Own) => self.open_start(),
         }
-        // The tour is in the menu View.
+        // The tour is in the View menu.
         self.settings.now.toured = true;
     }
 
@@ -132,7 +133,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Begins to start a rig whose file was changed; what does not start is taken back.
+    /// Starts a rig whose file was changed; the change is undone if the start fails.
     pub(super) fn begin_changed(&mut self, choice: Choice, undo: Undo) {
         if self.reopen.is_some() {
             undo.take_back();
@@ -146,7 +147,7 @@ impl ConsoleApp {
         }
     }
 
-    /// Ends the loop and begins to start this choice. What cannot be loaded ends nothing.
+    /// Ends the loop and starts this choice. A choice that cannot be loaded does not end the loop.
     pub(super) fn begin(&mut self, choice: Choice, before: Option<Choice>, because: Option<String>) {
         if self.reopen.is_some() {
             return self.start.tell(Some(text::link::ONE_RIG.get().to_owned()));
@@ -160,7 +161,7 @@ impl ConsoleApp {
             Ok(loaded) => loaded,
             Err(error) => return self.start.tell(Some(text::start::not_started(&chain(&error), None))),
         };
-        // End the old loop first: a rig must have one controller only, and emulators of the same places cannot run twice.
+        // End the old loop first: a rig must have only one controller, and emulators at the same addresses cannot run twice.
         drop(self.door.take());
         self.sessions.end();
         self.serve(None);
@@ -178,12 +179,12 @@ impl ConsoleApp {
             give.send(started.map_err(|error| format!("{error:#}"))).ok();
             ctx.request_repaint();
         };
-        // If no thread can be created, `give` is dropped, and that is told.
+        // If no thread can be created, `give` is dropped, which is reported.
         thread::Builder::new().name("emulators".to_owned()).spawn(work).ok();
         self.starting = Some(Starting { choice, rig, scene, emulators, before, because, undo: None });
     }
 
-    /// Goes on with what was begun, once the emulators serve.
+    /// Continues the start once the emulators serve.
     pub(super) fn go_on_starting(&mut self) {
         let Some(starting) = &self.starting else { return };
         let emulators = match starting.emulators.try_recv() {

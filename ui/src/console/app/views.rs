@@ -1,4 +1,4 @@
-//! What is below the top bar: a page that is open, the past, or the views of the machine.
+//! Content below the top bar: an open page, a recorded session, or the views of the machine.
 
 use egui::Ui;
 
@@ -29,8 +29,8 @@ impl ConsoleApp {
         self.panels.devices.is_starting = self.starting.is_some();
         let Wishes { restart, calibration, devices } =
             role_ui(ui, &mut self.settings.now, &mut self.live, &mut self.panels, &self.in_force, &mut self.outbox);
-        // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame
-        // takes precedence.
+        // At the end of the frame, after everything was drawn with the old loop. A stop requested in the same frame takes
+        // precedence.
         if self.outbox.holds_stop() {
             return;
         }

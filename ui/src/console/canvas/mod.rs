@@ -1,10 +1,10 @@
-//! Redraws only what has changed, if a software renderer is used.
+//! Redraws only the changed parts, if a software renderer is used.
 //!
-//! egui describes the whole window in every frame, and its painter draws all of it. With a software renderer that is
-//! most of a frame's cost: 1.6 million pixels are shaded and blended to change a few numbers. Here the shapes of a
-//! frame are compared with those of the previous one; the differences give a few rectangles, and only the shapes that
-//! overlap these are drawn, over the image that is in the window already (`surface`). The result is identical, pixel by
-//! pixel. With a GPU nothing of this is used.
+//! egui describes the whole window in every frame, and its painter draws all of it. With a software renderer that is most of
+//! a frame's cost: 1.6 million pixels are shaded and blended to change a few numbers. Here the shapes of a frame are compared
+//! with those of the previous one; the differences give a few rectangles, and only the shapes that overlap these are drawn,
+//! over the image that is already in the window (`surface`). The result is identical, pixel by pixel. With a GPU this module
+//! is not used.
 
 mod print;
 mod surface;
@@ -17,7 +17,7 @@ pub use surface::{Surface, renderer_of};
 
 /// A shape may extend beyond its bounds by the width of its antialiased edge, points.
 const EDGE: f32 = 2.0;
-/// Most rectangles; more would cost more than they save.
+/// Maximum number of rectangles; more would cost more than they save.
 const RECTANGLES_MAX: usize = 24;
 
 /// Every this many frames the whole window is drawn, so that the display never depends on comparisons alone.

@@ -29,7 +29,7 @@ pub struct Surface {
     inner: Mutex<Inner>,
     /// Number of the frame that is in the window.
     drawn: AtomicU64,
-    /// Share of the window that was redrawn in it, in millionths.
+    /// Fraction of the window that was redrawn in it, in millionths.
     share: AtomicU64,
     refused: AtomicBool,
 }
@@ -41,7 +41,7 @@ struct Inner {
     /// The mark set by the last frame.
     sign: Option<u8>,
     lost: u32,
-    /// The present frame is not the whole window.
+    /// The current frame is not the whole window.
     torn: bool,
 }
 
@@ -75,7 +75,7 @@ impl Surface {
         frame > 0 && self.drawn.load(Ordering::Relaxed) == frame
     }
 
-    /// Share of the window that was redrawn in the last frame, 0 to 1.
+    /// Fraction of the window that was redrawn in the last frame, 0 to 1.
     pub fn drawn_share(&self) -> f64 {
         if self.is_refused() { 1.0 } else { self.share.load(Ordering::Relaxed) as f64 * 1e-6 }
     }
@@ -139,17 +139,16 @@ impl Surface {
     pub fn destroy(&self, gl: &glow::Context) {
         let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(sink) = inner.sink.take() {
-            // SAFETY: the objects were made in this context and are not used again.
+            // SAFETY: the objects were created in this context and are not used again.
             unsafe { sink.destroy(gl) }
         }
     }
 }
 
 impl Inner {
-    /// Whether the image in the window is the one that the last frame left there.
+    /// Whether the image in the window is the one that the last frame left.
     ///
-    /// # Safety
-    /// The context must be current, with the window's framebuffer bound.
+    /// # Safety The context must be current, with the window's framebuffer bound.
     unsafe fn finds_its_sign(&mut self, gl: &glow::Context, size: [i32; 2]) -> bool {
         let same_size = std::mem::replace(&mut self.size, size) == size;
         let Some(sign) = self.sign.filter(|_| same_size) else { return false };

@@ -7,15 +7,12 @@ use super::super::text;
 /// Modifiers of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum With {
-    /// None.
     Nothing,
-    /// Shift.
     Shift,
     /// Control (Command on a Mac).
     Ctrl,
-    /// Control and Shift.
     CtrlShift,
-    /// Control; on some keyboards the sign needs Shift.
+    /// Control; on some keyboards the sign also needs Shift.
     CtrlAndSign,
 }
 
@@ -32,7 +29,7 @@ impl With {
         }
     }
 
-    /// The modifiers that are held down for it.
+    /// Modifiers to hold down.
     pub fn modifiers(self) -> Modifiers {
         match self {
             Self::Nothing => Modifiers::NONE,
@@ -46,19 +43,15 @@ impl With {
 /// A key with its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stroke {
-    /// The key.
     pub key: Key,
-    /// Its modifiers.
     pub with: With,
 }
 
 impl Stroke {
-    /// A key without modifiers.
     pub(super) const fn plain(key: Key) -> Self {
         Self { key, with: With::Nothing }
     }
 
-    /// Its name.
     pub fn name(self) -> String {
         let key = match self.key {
             Key::Plus | Key::Minus | Key::Equals => self.key.symbol_or_name(),
@@ -73,7 +66,7 @@ impl Stroke {
         format!("{held}{key}")
     }
 
-    /// It means something in a text that is being typed.
+    /// Whether the key has a function in a focused text field.
     pub(in crate::console) fn writes(self) -> bool {
         match self.with {
             With::Nothing => !(Key::F1..=Key::F12).contains(&self.key),

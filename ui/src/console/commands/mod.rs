@@ -1,7 +1,7 @@
-//! The one table of the commands of the window: menus, keys, the list of keys, the palette and `docs/screen.md` are made from it.
+//! The table of the window's commands: menus, keys, the list of keys, the palette and `docs/reference/commands.md` are generated from it.
 //!
-//! A command has a name, keys, a place and a meaning here; whether it is possible now, and what it does, is decided in
-//! one place too (`app/reaching.rs`, `app/acting.rs`), whoever asks for it.
+//! Name, keys, place and meaning of a command are defined here; its availability and its effect are defined once each, for
+//! all callers, in `app/reaching.rs` and `app/acting.rs`.
 
 mod keys;
 mod table;
@@ -12,7 +12,7 @@ use crate::language::Language;
 pub(in crate::console) use self::keys::{SIZE, UNDO};
 pub use self::{
     keys::{Stroke, With},
-    table::{as_markdown, table},
+    table::table,
 };
 
 /// Sizes in the menu, percent.
@@ -21,13 +21,11 @@ pub const SIZES_PERCENT: [u16; 5] = [100, 125, 150, 175, 200];
 /// What a command does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Stops.
     Stop,
     /// The step from idle to engaged.
     Engage,
     /// The step from a stop or a fault to idle.
     Release,
-    /// Shows a view.
     View(Role),
     /// Opens or closes the page of rigs and scenes.
     Rig,
@@ -39,82 +37,65 @@ pub enum Action {
     Alarms,
     /// Opens or closes the list of keys and terms.
     Glossary,
-    /// Begins the tour.
     Tour,
     /// Opens or closes the palette.
     Palette,
-    /// Acknowledges the alarms.
     Acknowledge,
-    /// Marks the present moment.
     Mark,
-    /// Keeps the session, or no longer.
+    /// Keeps the session, or stops keeping it.
     Keep,
-    /// Takes back a change of the screen.
     Undo,
-    /// Makes it again.
     Redo,
     /// Chooses the light or the dark palette.
     Light(bool),
-    /// Chooses the language of the window.
     Language(Language),
-    /// One step larger.
     Larger,
-    /// One step smaller.
     Smaller,
-    /// This size, percent.
+    /// Percent.
     Size(u16),
     /// Switches alarm sounds.
     Sound,
-    /// Switches the moment for which forces are drawn into the picture.
+    /// Switches between current forces and those of the image's time.
     ForcesOfNow,
-    /// Shows the picture as it comes.
+    /// Shows the unmodified image.
     PlainPicture,
-    /// Switches the recording of the picture.
+    /// Switches the recording of the image.
     RecordsPicture,
     /// Opens or closes a panel.
     Panel(Panel),
-    /// Every panel at its original place.
     ResetLayout,
-    /// Opens the ready check.
     Check,
-    /// Opens the list of calibrations.
     Calibrations,
-    /// Opens a wizard.
     Calibrate(Which),
     /// Leaves the page of a wizard, of the check or of the list.
     CloseWizard,
-    /// Holds the traces, or goes on.
+    /// Pauses or resumes the traces.
     Pause,
-    /// Shows the last ten seconds.
     LastTenSeconds,
-    /// Switches what is drawn in the field.
+    /// Switches a part of the field view.
     Draws(Switch),
-    /// Leads the instrument, or lets it go.
+    /// Starts or stops mouse control.
     Drive,
-    /// Leads the other instrument.
+    /// Drives the other instrument.
     OtherHand,
-    /// Opens or closes the jaws.
     Jaws,
-    /// Marks the place under the tip.
     MarkPlace,
     /// Ends the trial of a palpation.
     EndTrial,
-    /// Begins the trial anew.
     BeginTrial,
-    /// Hides the forces in the picture, or draws them.
+    /// Shows or hides the forces in the image.
     HideForces,
-    /// Shows the other lens.
     Lens,
-    /// Leaves the past.
+    /// Leaves the recorded session.
     LeavePast,
-    /// Plays the past, or holds it.
+    /// Plays or pauses the recorded session.
     Play,
-    /// Moves so far in the past, ms.
+    /// Moves by this time in the recorded session, ms.
     Step(i32),
 }
 
 impl Action {
-    /// The part of the window that it acts on reads its key itself: from elsewhere its key is pressed for it.
+    /// Whether the part of the window concerned reads the key itself: from elsewhere the key press is simulated.
     pub(in crate::console) const fn is_of_part(self) -> bool {
         matches!(
             self,
@@ -129,7 +110,7 @@ impl Action {
         )
     }
 
-    /// What a participant can do in a trial of a study.
+    /// Whether a participant may use it in a trial of a study.
     pub(in crate::console) const fn is_of_participant(self) -> bool {
         matches!(
             self,
@@ -149,42 +130,34 @@ impl Action {
         )
     }
 
-    /// It leads towards motion and force: the palette asks once more.
+    /// Whether it leads towards motion and force: the palette then asks for confirmation.
     pub const fn leads_to_force(self) -> bool {
         matches!(self, Self::Engage | Self::Release)
     }
 
-    /// A key that is held down repeats it.
+    /// Whether holding the key repeats it.
     pub(in crate::console) const fn repeats(self) -> bool {
         matches!(self, Self::Larger | Self::Smaller | Self::Step(_) | Self::Undo | Self::Redo)
     }
 }
 
-/// Where a command is, besides the palette.
+/// Place of a command, in addition to the palette.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// The top bar.
     Bar,
-    /// The View menu.
     ViewMenu,
-    /// The strip of alarms.
     Alarms,
-    /// The panel of calibrations.
     Calibration,
-    /// The panel of traces.
     Traces,
-    /// The operating field.
     Field,
-    /// The endoscope's picture.
     Picture,
-    /// The frame around the past.
+    /// The frame around a recorded session.
     Past,
     /// Only a key.
     Keys,
 }
 
 impl Place {
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bar => text::commands::AT_BAR.get(),
@@ -200,35 +173,28 @@ impl Place {
     }
 }
 
-/// A command.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// What it does.
     pub action: Action,
-    /// Its name.
     pub title: String,
-    /// Its name in English, by which it is found in every language: the documents have it.
+    /// English name, by which it is found in every language, because the docs use it.
     pub english: String,
-    /// Its meaning.
     pub does: &'static str,
-    /// Its keys.
     pub keys: &'static [Stroke],
-    /// Where it is.
     pub place: Place,
 }
 
 impl Entry {
-    /// The command of this action.
     pub(in crate::console) fn of(action: Action) -> Option<&'static Self> {
         table().iter().find(|entry| entry.action == action)
     }
 
-    /// Its keys in words; empty if it has none.
+    /// Text of its keys; empty if it has none.
     pub fn keys_told(&self) -> String {
         self.keys.iter().map(|stroke| stroke.name()).collect::<Vec<_>>().join(", ")
     }
 
-    /// Its name, with its keys in brackets if it has any.
+    /// Name, with its keys in brackets if it has any.
     pub(in crate::console) fn with_keys(&self) -> String {
         match self.keys {
             [] => self.title.clone(),
@@ -237,14 +203,13 @@ impl Entry {
     }
 }
 
-/// Whether a command can be done now.
+/// Availability of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// It can.
     Can,
-    /// It is on the screen, but not possible; why.
+    /// On the screen but not possible, for this reason.
     Cannot(&'static str),
-    /// Who sits before this screen does not have it.
+    /// Not on this person's screen.
     Absent,
 }
 
@@ -257,7 +222,7 @@ impl Reach {
         }
     }
 
-    /// Absent unless this holds.
+    /// Absent unless `holds`.
     pub(in crate::console) const fn only_if(self, holds: bool) -> Self {
         if holds { self } else { Self::Absent }
     }

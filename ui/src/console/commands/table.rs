@@ -1,6 +1,4 @@
-//! The table.
-
-use std::{fmt::Write as _, sync::LazyLock};
+use std::sync::LazyLock;
 
 use egui::Key;
 
@@ -44,7 +42,7 @@ fn entry(action: Action, (title, does): (Text, Text), keys: Keys, place: Place) 
     named(action, title.get(), does.get(), keys, place)
 }
 
-/// The same with words that are made of others.
+/// A command whose name is built from other texts.
 fn named(action: Action, title: impl Into<String>, does: &'static str, keys: Keys, place: Place) -> Entry {
     Entry { action, title: title.into(), english: String::new(), does, keys, place }
 }
@@ -83,7 +81,7 @@ fn screen() -> Vec<Entry> {
     let menu = Place::ViewMenu;
     let [larger, smaller] = SIZE;
     let [undo, redo] = UNDO;
-    // Each in itself: who does not read the present language finds the own one.
+    // Each language by its own name, so that users who cannot read the current one find theirs.
     let languages = Language::CHOICES
         .map(|one| named(Action::Language(one), names::language(one.name()), names::LANGUAGE_DOES.get(), &[], menu));
     let mut entries = vec![
@@ -174,7 +172,7 @@ fn past() -> Vec<Entry> {
     ]
 }
 
-/// Last: nobody should come upon them by accident.
+/// Last, so that no one reaches these commands by accident.
 fn machine() -> Vec<Entry> {
     const STOP: Keys = &[Stroke::plain(Key::Space), Stroke::plain(Key::Escape)];
     vec![
@@ -183,17 +181,6 @@ fn machine() -> Vec<Entry> {
         entry(Action::Release, names::RELEASE, &[], Place::Bar),
         entry(Action::Engage, names::ENGAGE, &[], Place::Bar),
     ]
-}
-
-/// The rows of the table in `docs/screen.md`.
-pub fn as_markdown() -> String {
-    let mut rows = String::new();
-    for entry in table() {
-        let does = entry.does.lines().next().unwrap_or_default();
-        // Writing into a String cannot fail.
-        let _ = writeln!(rows, "| {} | {} | {} | {does} |", entry.title, entry.keys_told(), entry.place.name());
-    }
-    rows
 }
 
 #[cfg(test)]
@@ -235,13 +222,34 @@ mod tests {
         }
     }
 
+    /// `docs/reference/commands.md`, from the table.
+    fn page() -> String {
+        let row = |entry: &Entry| {
+            let does = entry.does.lines().next().unwrap_or_default();
+            format!("| {} | {} | {} | {does} |\n", entry.title, entry.keys_told(), entry.place.name())
+        };
+        let commands: Vec<String> = table().iter().map(row).collect();
+        let by_hand = names::BY_HAND.map(|(keys, does)| format!("| {keys} | {does} |\n"));
+        format!(
+            "# All commands and keys\n\n\
+             Every command of the window. [Screen and keys](../screen.md#find-a-command) says how to find one.\n\n\
+             This page is generated: change `ui/src/console/commands/table.rs`, then run `NIMA_WRITE_DOCS=1 cargo test -p nima-console --lib \
+             the_page_of_the_commands`.\n\n\
+             | command | key | where | effect |\n|---|---|---|---|\n{}\n\
+             Keys and gestures that are not commands:\n\n| key | effect |\n|---|---|\n{}",
+            commands.concat(),
+            by_hand.concat()
+        )
+    }
+
+    /// `NIMA_WRITE_DOCS=1` writes the page.
     #[test]
-    fn the_document_has_the_table() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/screen.md");
-        let document = std::fs::read_to_string(path).unwrap();
-        assert!(document.contains(&as_markdown()), "docs/screen.md must contain:\n{}", as_markdown());
-        for (keys, does) in names::BY_HAND {
-            assert!(document.contains(&format!("| {keys} | {does} |")), "{keys}");
+    fn the_page_of_the_commands_is_up_to_date() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/reference/commands.md");
+        if std::env::var_os("NIMA_WRITE_DOCS").is_some() {
+            std::fs::write(&path, page()).unwrap();
         }
+        let written = std::fs::read_to_string(&path).unwrap_or_default();
+        assert_eq!(written, page(), "{}: run with NIMA_WRITE_DOCS=1", path.display());
     }
 }

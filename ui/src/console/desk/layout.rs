@@ -1,8 +1,8 @@
-//! Arrangement of the panels as saved in the settings, and the default layout.
+//! Layout of the panels as saved in the settings, and the default layout.
 //!
-//! The format is simple: rows, columns and tabs of panels, with shares of the space. Whatever a file contains, every
-//! panel appears exactly once: one that is missing in the file is added as a tab, one that is named twice stays at its
-//! first place.
+//! The format is simple: rows, columns and tabs of panels, with their parts of the space. Whatever a file contains, every
+//! panel appears exactly once: a panel that is missing in the file is added as a tab, and a repeated one stays at its first
+//! place.
 
 use egui::{Id, Vec2};
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
@@ -10,15 +10,15 @@ use serde::{Deserialize, Serialize};
 
 use super::Panel;
 
-/// The whole of which a [`Part`] has a share.
+/// Sum of the parts of a row or column, see [`Part`].
 const WHOLE: f32 = 10_000.0;
-/// Smallest share of a panel, in parts of [`WHOLE`], so that its edge can still be dragged.
+/// Smallest part of a panel, relative to [`WHOLE`], so that its edge can still be dragged.
 const LEAST_SHARE: f32 = 300.0;
 
 /// Width of the column of settings and of the column of figures.
 const KNOBS: f32 = 316.0;
 const FIGURES: f32 = 348.0;
-/// Width of the force-space panel beside the traces, and the width between the columns from which it is placed there.
+/// Width of the force-space panel next to the traces, and the width between the columns from which it is placed there.
 const FORCE_SPACE: f32 = 300.0;
 const FORCE_SPACE_FROM: f32 = 720.0;
 /// Width of the traces.
@@ -32,7 +32,6 @@ const CALIBRATIONS: f32 = 246.0;
 const HORIZON: f32 = 288.0;
 const DEGREES: f32 = 312.0;
 
-/// The technician's layout.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layout {
@@ -40,7 +39,7 @@ pub struct Layout {
     pub places: Option<Node>,
     /// Closed panels; they keep their places.
     pub closed: Vec<Panel>,
-    /// Tabs that were selected, the latest first.
+    /// Selected tabs, the latest first.
     pub front: Vec<Panel>,
 }
 
@@ -48,32 +47,28 @@ pub struct Layout {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Node {
-    /// One panel.
     Panel(Panel),
-    /// Tabs, one behind the other.
     Tabs(Vec<Node>),
     /// Side by side.
     Row(Vec<Part>),
-    /// One under the other.
+    /// One below the other.
     Column(Vec<Part>),
 }
 
 /// A member of a row or column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
-    /// Its share of the space; only ratios matter.
+    /// Part of the space; only ratios matter.
     pub share: u16,
-    /// Its content.
     pub of: Node,
 }
 
 impl Layout {
-    /// Whether this panel is open.
     pub fn is_open(&self, panel: Panel) -> bool {
         !self.closed.contains(&panel)
     }
 
-    /// Closes the panel, or opens it at its former place and brings it to the front.
+    /// Closes the panel, or reopens it at its former place in front.
     pub fn toggle(&mut self, panel: Panel) {
         if self.is_open(panel) {
             self.closed.push(panel);
@@ -210,7 +205,7 @@ fn node(tiles: &Tiles<Panel>, id: TileId) -> Option<Node> {
     }
 }
 
-/// Settings on the left, figures on the right, the 3-D view above the traces in between; what does not fit is placed in
+/// Settings on the left, figures on the right, the 3-D view above the traces in between; panels that do not fit are placed in
 /// tabs.
 fn default_for(size: Vec2) -> Node {
     let middle = (size.x - KNOBS - FIGURES).max(200.0);
@@ -232,8 +227,7 @@ fn default_for(size: Vec2) -> Node {
     row(vec![(KNOBS, left), (middle, between), (FIGURES, right)])
 }
 
-/// For windows too narrow for the traces between two columns: the figures beside the 3-D view, and the traces below
-/// both.
+/// For windows too narrow for the traces between two columns: the figures next to the 3-D view, and the traces below both.
 fn narrow(width: f32, height: f32, traces: f32) -> Node {
     let [left, _] = short_sides(height);
     let above = row(vec![

@@ -1,8 +1,8 @@
-//! The technician's desk: every panel is a tile with a title that can be dragged into tabs, rows and columns, resized,
-//! closed and opened again. The arrangement is saved in the settings ([`Layout`]); the tiles themselves are kept here
-//! between frames.
+//! The layout of the Technician view: every panel is a tile with a title that can be dragged into tabs, rows and columns,
+//! resized, closed and reopened. The layout is saved in the settings ([`Layout`]); the tiles themselves are kept here between
+//! frames.
 //!
-//! The desk is limited to the space below the top bar, so that stop button, state and alarms stay visible.
+//! The tiles are limited to the space below the top bar, so that stop button, state and alarms stay visible.
 
 mod layout;
 mod panel;
@@ -29,10 +29,9 @@ const TITLE: f32 = 13.5;
 /// Size of the button that closes a panel.
 const CLOSE: Vec2 = vec2(30.0, 26.0);
 
-/// State of the tiles.
 #[derive(Debug, Default)]
 pub struct Desk {
-    /// The tiles, and what they were built from: the layout, and the desk's size if the layout depends on it.
+    /// The tiles, and their source: the layout, and the available size if the layout depends on it.
     shown: Option<(Tree<Panel>, Layout, Option<Vec2>)>,
     /// Tiles were moved or resized, or tabs selected, since the layout was last saved.
     moved: bool,
@@ -76,11 +75,10 @@ impl Desk {
     }
 }
 
-/// Callbacks of the tiles while they are drawn.
 struct Contents<'a> {
     draw: &'a mut dyn FnMut(&mut Ui, Panel),
     closed: Option<Panel>,
-    /// Where the button goes that closes this panel, which is drawn after its title: so the keyboard reaches it.
+    /// Place of the close button, which is drawn after the panel's title so that the keyboard reaches it.
     button: Option<(Rect, Panel)>,
     moved: &'a mut bool,
     turned: &'a mut bool,
@@ -197,7 +195,7 @@ impl Behavior<Panel> for Contents<'_> {
 }
 
 impl Contents<'_> {
-    /// The button that closes a panel, at its place in the bar of the tabs.
+    /// The close button of a panel, in the tab bar.
     fn close_ui(&mut self, ui: &mut Ui, place: Rect, panel: Panel) {
         let mut bar = ui.new_child(UiBuilder::new().max_rect(place).id_salt("close"));
         bar.set_clip_rect(place);

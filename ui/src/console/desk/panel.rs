@@ -1,4 +1,4 @@
-//! The panels of the technician's desk: names, purposes, and smallest sizes.
+//! Panels of the Technician view: names, purposes, and minimum sizes.
 
 use egui::{Vec2, vec2};
 use serde::{Deserialize, Serialize};
@@ -12,36 +12,23 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Panel {
-    /// The operating field in three dimensions.
     Field,
-    /// Forces over time.
     Traces,
-    /// Measured against rendered force in three dimensions.
     ForceSpace,
-    /// Mode, gain, delay, dead band.
     Feedback,
-    /// The devices of the rig.
     Devices,
-    /// Calibrations in force, and buttons for the wizards.
     Calibrations,
-    /// Why there is no force.
     Gates,
-    /// Interlock and gates of each arm.
     Safety,
-    /// Error of each mode at the horizon.
     Horizon,
-    /// Chosen polynomial degrees.
     Degrees,
-    /// Timing of the loop.
     Timing,
-    /// The link to the follower's machine.
     Link,
-    /// Computing time against accuracy.
     Tradeoff,
 }
 
 impl Panel {
-    /// All of them, in the order of the menu.
+    /// All panels, in the order of the menu.
     pub const ALL: [Self; 13] = [
         Self::Field,
         Self::Traces,
@@ -58,12 +45,11 @@ impl Panel {
         Self::Tradeoff,
     ];
 
-    /// Those that this build has.
+    /// Panels of this build.
     pub fn built() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|panel| panel.is_built())
     }
 
-    /// Whether this build has it.
     pub(super) fn is_built(self) -> bool {
         match self {
             Self::Link => extras::part(Extra::way).is_some(),
@@ -91,7 +77,6 @@ impl Panel {
         }
     }
 
-    /// Its purpose, in a sentence or two.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Field => text::desk::FIELD_HOVER.get(),
@@ -110,7 +95,7 @@ impl Panel {
         }
     }
 
-    /// The smallest size in which it can be read, points; if it is smaller, it is scrolled.
+    /// Minimum readable size, points; a smaller panel is scrolled.
     pub(super) const fn least(self) -> Vec2 {
         match self {
             Self::Field => vec2(160.0, 120.0),

@@ -1,19 +1,19 @@
-//! Which part of the picture fills the view: chosen with wheel and mouse.
+//! The visible part of the image: chosen with wheel and mouse.
 
 use egui::{Pos2, Rect, Response, Vec2, vec2};
 
 use super::place::Place;
 
-/// Largest zoom; and how far the wheel has to be turned for twice the size, points.
+/// Maximum zoom.
 const ZOOM_MOST: f32 = 8.0;
 const TWICE: f32 = 250.0;
 
-/// Zoom, and what is in the middle of the view.
+/// Zoom, and centre of the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
-    /// 1: all of the picture.
+    /// 1: the whole image.
     pub(super) zoom: f32,
-    /// Place in the picture as it stands on the screen, as shares of its sides.
+    /// Position in the displayed image, as fractions of its sides.
     pub(super) middle: Vec2,
 }
 
@@ -24,12 +24,12 @@ impl Default for Aim {
 }
 
 impl Aim {
-    /// Not all of the picture is in the view.
     pub(super) fn is_zoomed(&self) -> bool {
         self.zoom > 1.001
     }
 
-    /// Where the whole picture would be, if it fits like `whole` into the view without zoom. It never leaves a gap that zoom 1 has not.
+    /// Position of the whole image, if it fits into the view as `whole` without zoom. It never leaves a gap that zoom 1 does
+    /// not have.
     pub(super) fn full(&self, view: Rect, whole: Vec2) -> Rect {
         let size = whole * self.zoom;
         let along = |view: egui::Rangef, size: f32, middle: f32| {
@@ -42,13 +42,13 @@ impl Aim {
         Rect::from_min_size(min, size)
     }
 
-    /// Obeys wheel, drag and double click over the picture.
+    /// Applies wheel, drag and double click over the image.
     pub(super) fn obey(&mut self, response: &Response, view: Rect, place: &Place) {
         if response.double_clicked() {
             *self = Self::default();
             return;
         }
-        // What was clamped is where it is.
+        // Store the clamped position.
         self.middle = share(place.full, view.center());
         if response.dragged() && self.is_zoomed() {
             self.middle -= response.drag_delta() / place.full.size();
@@ -60,7 +60,7 @@ impl Aim {
         }
     }
 
-    /// What is under the pointer stays there.
+    /// Keeps the point under the pointer in place.
     fn zoom_at(&mut self, pointer: Pos2, factor: f32, view: Rect, place: &Place) {
         let before = self.zoom;
         self.zoom = (self.zoom * factor).clamp(1.0, ZOOM_MOST);
@@ -69,7 +69,7 @@ impl Aim {
     }
 }
 
-/// A place on the screen as shares of a rectangle.
+/// A screen position as fractions of a rectangle.
 fn share(of: Rect, at: Pos2) -> Vec2 {
     (at - of.min) / of.size().max(Vec2::splat(1.0))
 }
@@ -100,7 +100,7 @@ mod tests {
             let before = place(aim);
             aim.zoom_at(pointer, factor, view(), &before);
             let after = place(aim);
-            // Narrower than the view, the picture stays in its middle.
+            // An image narrower than the view stays centred.
             if after.full.width() > view().width() {
                 let miss = under(&before, pointer) - under(&after, pointer);
                 assert!(before.full.width() < view().width() || miss.length() < 1e-4, "{miss:?}");

@@ -1,4 +1,4 @@
-//! The corner of the picture: its age and rate, and what the forces in it are.
+//! The corner of the image: its age and rate, and a remark about the drawn forces.
 
 use std::time::{Duration, Instant};
 
@@ -11,21 +11,19 @@ use super::{
 };
 use crate::console::{text, theme};
 
-/// The figures stand still for so long, so that they can be read.
+/// Update interval of the figures, so that they can be read.
 const FIGURES_EVERY: Duration = Duration::from_millis(250);
 
-/// What the corner is beside.
 #[derive(Clone, Copy)]
 pub(super) struct Corner<'a> {
-    /// Where the tips are on the screen.
+    /// Screen positions of the tips.
     pub(super) tips: &'a [egui::Pos2],
-    /// The picture is of now, and of the size that the forces are drawn for.
+    /// The image is current, and has the size for which the forces are drawn.
     pub(super) fits: bool,
     pub(super) camera: Option<&'a Camera>,
 }
 
 impl Eyes {
-    /// Age, rate, and what the forces are, in a corner.
     pub(super) fn corner_ui(
         &mut self,
         painter: &Painter,
@@ -51,7 +49,7 @@ impl Eyes {
             (None, ..) if self.mount.is_some() => text::eyes::NO_MARKER.get().to_owned(),
             (None, ..) if has_lens => text::eyes::NO_PLACE.get().to_owned(),
             (None, ..) => text::eyes::NO_CAMERA.get().to_owned(),
-            // Where the picture is not of now, they would be at a wrong place.
+            // On an old image the forces would be at a wrong place.
             _ if !fits => String::new(),
             (_, true, _) => text::eyes::FORCES_HIDDEN.get().to_owned(),
             (_, false, Some(off_px)) => text::eyes::forces_off(off_px),

@@ -1,4 +1,4 @@
-//! Pictures of two lenses side by side: which half is shown, where, and what its lens is.
+//! Images of two lenses side by side: the displayed half, its position, and its lens.
 
 use egui::{Rect, pos2};
 use nima_endoscope::Camera;
@@ -7,27 +7,26 @@ use nima_machine::config::{Endoscope, StereoView};
 use super::{aim::Aim, place::Place};
 use crate::console::text;
 
-/// What one lens sees.
+/// Image of one lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Half {
     pub(super) place: Place,
-    /// Its camera, if it is known.
+    /// Its camera, if known.
     pub(super) camera: Option<Camera>,
-    /// What is drawn for this half stays in it.
+    /// Drawings for this half are clipped to this area.
     pub(super) within: Rect,
 }
 
-/// What the operator chose to see of a picture.
+/// The operator's choice of the displayed part.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shown {
-    /// `None` for a picture of one lens.
+    /// `None` for an image of one lens.
     pub(super) view: Option<StereoView>,
-    /// Cut off at the left, top, right and bottom, as shares; of two lenses, of each half.
+    /// Cut off at the left, top, right and bottom, as fractions; for two lenses, of each half.
     pub(super) crop: [f32; 4],
     pub(super) aim: Aim,
 }
 
-/// The view after this one.
 pub(super) const fn next(view: StereoView) -> StereoView {
     match view {
         StereoView::Left => StereoView::Right,
@@ -36,12 +35,12 @@ pub(super) const fn next(view: StereoView) -> StereoView {
     }
 }
 
-/// Size of the whole picture of which a lens sees a part, px.
+/// Size of the whole image of which a lens covers a part, px.
 pub(super) fn whole_px([width, height]: [usize; 2], endoscope: &Endoscope) -> [usize; 2] {
     if endoscope.view.is_some() { [2 * width, height] } else { [width, height] }
 }
 
-/// What is shown of a picture, and where.
+/// The displayed parts of an image, and their positions.
 pub(super) fn halves(
     area: Rect,
     size_px: [usize; 2],
@@ -75,7 +74,7 @@ pub(super) fn halves(
     }
 }
 
-/// Which half is shown, and what the key does; nothing for a picture of one lens.
+/// Text about the displayed half and the key; empty for an image of one lens.
 pub(super) fn told(view: Option<StereoView>, endoscope: &Endoscope) -> &'static str {
     match view {
         None => "",
@@ -119,7 +118,7 @@ mod tests {
         let shares = |half: &Half| half.place.corners().map(|(share, _)| share.x);
         assert_eq!((shares(&left), shares(&right)), ([0.0, 0.5, 0.0, 0.5], [0.5, 1.0, 0.5, 1.0]));
         assert_eq!(right.place.at(&Vector2::new(0.0, 0.0)), right.place.rect.min);
-        // What is near is seen farther to the left by the right lens.
+        // The right lens sees near objects farther to the left.
         let point_m = Vector3::new(0.01, 0.0, 0.01);
         let [seen_left, seen_right] = [left, right].map(|half| half.camera.unwrap().project(&point_m).unwrap());
         assert!(seen_left.x - seen_right.x > 10.0 && (seen_left.y - seen_right.y).abs() < 5.0);

@@ -1,13 +1,12 @@
-//! What of a drawn force the instrument hides.
+//! Occlusion of a drawn force by the instrument.
 
 use nalgebra::Vector3;
 
-/// Half the width of an instrument's shaft, m: most have 5 mm.
+/// Half the width of an instrument's shaft, m: most shafts have 5 mm.
 const SHAFT_M: f64 = 0.0025;
-/// A point nearer to the shaft than this behind its middle line is not hidden, as a share of the way from the lens.
+/// A point is hidden only if it is farther from the lens than the shaft's middle line; factor on the distance from the lens.
 const BEHIND: f64 = 0.999;
 
-/// An instrument's shaft, from its tip to its trocar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shaft {
     pub(super) tip_m: Vector3<f64>,
@@ -15,7 +14,7 @@ pub(super) struct Shaft {
 }
 
 impl Shaft {
-    /// Whether it stands between the lens and a point.
+    /// Whether it is between the lens and a point.
     pub(super) fn hides(&self, lens_m: &Vector3<f64>, point_m: &Vector3<f64>) -> bool {
         let [sight, shaft] = [point_m - lens_m, self.trocar_m - self.tip_m];
         let between = self.tip_m - lens_m;
@@ -28,7 +27,7 @@ impl Shaft {
         if !(a > 0.0 && c > 0.0 && least > 1e-12 * a * c) {
             return false;
         }
-        // Where the two lines are nearest, then the nearest point of the sight to the end of the shaft that was meant.
+        // Nearest point of the two lines, then the nearest point of the line of sight to the clamped end of the shaft.
         let along = ((b * d - a * e) / least).clamp(0.0, 1.0);
         let seen = (self.tip_m + shaft * along - lens_m).dot(&sight) / a;
         if !(0.0..BEHIND).contains(&seen) {
@@ -42,7 +41,7 @@ impl Shaft {
 mod tests {
     use super::*;
 
-    /// Straight up from the tip; the lens is beside it.
+    /// Straight up from the tip, with the lens to the side.
     fn shaft() -> Shaft {
         Shaft { tip_m: Vector3::zeros(), trocar_m: Vector3::new(0.0, 0.0, 0.2) }
     }

@@ -1,5 +1,5 @@
-//! The endoscope's picture in the surgeon's view: taken from a feed with threads of its own, uploaded once, and told in words when it is not what
-//! happens now. Nothing of it touches the loop.
+//! The endoscope image in the Surgeon view: taken from a feed with its own threads, uploaded once, and labelled with a text
+//! if it is not current. Nothing here touches the loop.
 
 mod aim;
 mod corner;
@@ -43,51 +43,50 @@ use self::{
 };
 use super::{double_buffer::DoubleBuffer, live::Live, settings::PictureSettings, text, theme};
 
-/// A camera whose check was worse is not trusted, in widths of the picture: 10 px of 1280. Its forces are drawn with this opacity.
+/// Forces of a camera with a larger error in its check are drawn with this opacity; in image widths: 10 px of 1280.
 const OFF: f64 = 10.0 / 1280.0;
 const DOUBTFUL: f32 = 0.35;
-/// Time from one frame to the next where the words have a clock, and no picture wakes the window.
+/// Frame interval while a text shows a clock and no image wakes the window.
 const CLOCK: Duration = Duration::from_millis(100);
-/// From this rate on pictures wake the window often enough.
+/// From this rate on, images wake the window often enough.
 const WAKES_HZ: f64 = 24.0;
-/// What remains of a picture that is not of now.
+/// Tint of an image that is not current.
 const PAST: Color32 = Color32::from_gray(110);
 
 type Newest = Look<Arc<Picture>>;
 
-/// What is known of the picture in a frame.
+/// State of the image in a frame.
 struct Seen {
     look: Option<Newest>,
-    /// Why there is none, and what to do, where its standing does not say so.
+    /// Reason for a missing image and remedy, if its state does not give them.
     nothing: Option<[String; 2]>,
-    /// Where the tips were then, for a picture of the past.
+    /// Tip poses at the time of a recorded image.
     poses: Option<[Option<Pose>; SIDES]>,
-    /// The endoscope's marker when the picture was made, where its place is known.
+    /// Pose of the endoscope's marker at the time of the image, if known.
     world_from_n: Option<Isometry3<f64>>,
 }
 
-/// What was found for a moment of the past.
+/// Image found for a moment of a recorded session.
 #[cfg(test)]
 pub(in crate::console) struct Projected(pub(in crate::console) Option<Arc<Picture>>);
 
-/// The picture, or nothing where the rig has no endoscope.
+/// The endoscope image, or nothing for a rig without endoscope.
 #[derive(Default)]
 pub struct Eyes {
-    /// As the rig file has it.
+    /// The endoscope of the rig file.
     wanted: Option<Endoscope>,
     feed: Option<Feed>,
-    /// Of a recorded session.
+    /// For a recorded session.
     projector: Option<Projector>,
-    /// Why its address cannot be used.
+    /// Reason why its address cannot be used.
     refused: Option<String>,
     mount: Option<Mount>,
     screen: DoubleBuffer,
-    /// Number of the picture on the screen.
     number: u64,
     shown: Option<(Instant, String)>,
     rate_hz: f64,
     hides_forces: bool,
-    /// Of a picture of two lenses, what is shown.
+    /// Displayed part of a stereo image.
     view: Option<StereoView>,
     poses: Poses,
     aim: Aim,
@@ -101,7 +100,7 @@ impl std::fmt::Debug for Eyes {
 }
 
 impl Eyes {
-    /// Takes the picture that the rig file names, and puts it into this reel too; called in every frame.
+    /// Uses the endoscope of the rig file, and also puts its images into this queue; called in every frame.
     pub(in crate::console) fn serve(&mut self, wanted: Option<&Endoscope>, reel: &Reel, ctx: &Context) {
         if self.wanted.as_ref() == wanted {
             return;
@@ -114,7 +113,7 @@ impl Eyes {
         let address = match url.parse::<Address>() {
             Ok(address) => address,
             Err(error) => {
-                self.refused = Some(text::eyes::refused(&error.to_string()));
+                self.refused = Some(text::eyes::refused(&crate::words::quoted(&error)));
                 return;
             }
         };
@@ -126,11 +125,11 @@ impl Eyes {
                 feed.set_tone(self.settings.tone());
                 self.feed = Some(feed);
             }
-            Err(error) => self.refused = Some(text::eyes::refused(&error.to_string())),
+            Err(error) => self.refused = Some(text::eyes::refused(&crate::words::quoted(&error))),
         }
     }
 
-    /// Shows the pictures of a recorded session on this rig.
+    /// Shows the images of a recorded session on this rig.
     pub(in crate::console) fn project(&mut self, session: &Path, endoscope: Endoscope, ctx: &Context) {
         let ctx = ctx.clone();
         let settings = self.settings;
@@ -144,7 +143,7 @@ impl Eyes {
         };
     }
 
-    /// Shows the picture so; called in every frame.
+    /// Sets the display settings; called in every frame.
     pub(in crate::console) fn show_as(&mut self, settings: PictureSettings) {
         if self.settings == settings {
             return;
@@ -155,40 +154,38 @@ impl Eyes {
         }
     }
 
-    /// The rig has an endoscope.
     pub(in crate::console) const fn is_on(&self) -> bool {
         self.wanted.is_some()
     }
 
-    /// The picture is of two lenses.
     pub(in crate::console) const fn has_two_lenses(&self) -> bool {
         self.view.is_some()
     }
 
-    /// Pictures wake the window often enough for everything else that moves.
+    /// Images wake the window often enough for everything else that moves.
     pub(in crate::console) fn wakes(&self) -> bool {
         self.rate_hz >= WAKES_HZ
     }
 
-    /// The newest picture and its number, for who looks at it otherwise than this does.
+    /// The newest image and its number, for other uses.
     pub(in crate::console) fn newest(&self) -> Option<(u64, Arc<Picture>)> {
         self.feed.as_ref()?.look(Instant::now()).picture
     }
 
-    /// A tick of the loop: where a tip is at its time.
+    /// Records the tip position of a tick.
     pub(in crate::console) fn note(&mut self, tick: &Tick) {
         if self.mount.is_some() {
             self.poses.note(tick, Instant::now());
         }
     }
 
-    /// How it stands with the picture and what to do, for the list of devices; nothing where there is no endoscope.
+    /// State of the image and remedy, for the list of devices; `None` without endoscope.
     pub(in crate::console) fn told(&self) -> Option<[String; 2]> {
         self.wanted.as_ref()?;
         Some(self.standing_told(&self.feed.as_ref().map_or(Standing::Opening, |feed| feed.standing(Instant::now()))))
     }
 
-    /// What is wrong, and what to do; how it stands and nothing, if all is well.
+    /// Problem and remedy; the state and an empty text if there is no problem.
     fn standing_told(&self, standing: &Standing) -> [String; 2] {
         if let Some(refused) = &self.refused {
             return [refused.clone(), text::eyes::REFUSED_CURE.get().to_owned()];
@@ -198,11 +195,11 @@ impl Eyes {
             Standing::Live => [text::eyes::LIVE.get().to_owned(), String::new()],
             Standing::Still => [text::eyes::STILL.get().to_owned(), String::new()],
             Standing::Wrong(wrong) => wrong_told(wrong),
-            Standing::Lost(trouble) => [text::eyes::lost(&trouble.to_string()), trouble.cure().to_owned()],
+            Standing::Lost(trouble) => [text::eyes::lost(&crate::words::quoted(trouble)), trouble.cure().to_owned()],
         }
     }
 
-    /// Draws the picture over the available space.
+    /// Draws the image over the available space.
     pub(in crate::console) fn ui(&mut self, ui: &mut Ui, live: &Live) {
         let now = Instant::now();
         let Seen { look, nothing, poses: then, world_from_n } = self.look(live, now);
@@ -245,7 +242,7 @@ impl Eyes {
             let instrument = |side| Some(Instrument { side, pose: pose(side)?, trocar_m: trocar(live, side) });
             tips.extend(seen.draw(live.sides().filter_map(instrument), self.hides_forces));
         }
-        // Of two halves, that over which the pointer is.
+        // If there are two halves: the half under the pointer.
         let pointed = response.hover_pos().and_then(|at| halves.iter().find(|half| half.within.contains(at)));
         if let Some(half) = pointed.or(halves.first()) {
             self.aim.obey(&response, half.within, &half.place);
@@ -268,14 +265,14 @@ impl Eyes {
         }
     }
 
-    /// The recorded picture of this moment (s), if there is one, once it was looked for.
+    /// The recorded image of this moment (s), once it was searched for.
     #[cfg(test)]
     pub(in crate::console) fn projected(&self, t_s: f64) -> Option<Projected> {
         let found = self.projector.as_ref()?.found().filter(|found| found.asked_s.to_bits() == t_s.to_bits())?;
         Some(Projected(found.look().ok().and_then(|look| look.picture).map(|(_, picture)| picture)))
     }
 
-    /// The newest picture, or that of the moment on the screen.
+    /// The newest image, or that of the moment on the screen.
     fn look(&mut self, live: &Live, now: Instant) -> Seen {
         let Some(projector) = &mut self.projector else {
             let look = self.feed.as_ref().map(|feed| feed.look(now));
@@ -297,13 +294,13 @@ impl Eyes {
         }
     }
 
-    /// How far forces are drawn beside the tips, px, if the check of the camera was worse than is tolerable.
+    /// Distance between drawn forces and tips, px, if the error in the camera check was too large.
     fn off_px(&self) -> Option<f64> {
         let camera = self.wanted.as_ref()?.camera?;
         camera.checked_px.filter(|off_px| *off_px > OFF * camera.size_px[0] as f64)
     }
 
-    /// Uploads a new picture and draws it as large as it can be; gives what is shown of it.
+    /// Uploads a new image and draws it as large as possible; returns the displayed parts.
     fn picture_ui(
         &mut self,
         painter: &Painter,
@@ -334,7 +331,7 @@ impl Eyes {
     }
 }
 
-/// Where the instrument of a side goes through the wall, m.
+/// Position of a side's trocar, m.
 fn trocar(live: &Live, side: Side) -> Option<Vector3<f64>> {
     let of_rig = live.rig.devices.as_ref().and_then(|devices| devices.arm(side)).map(|set| set.rcm.trocar_m);
     of_rig.or_else(|| live.scene.of_side(side).map(|scene| scene.trocar_m))
@@ -345,13 +342,13 @@ pub(in crate::console) fn wrong_told(wrong: &Wrong) -> [String; 2] {
         Wrong::Frozen(stood) => (text::eyes::frozen(*stood), text::eyes::FROZEN_CURE.get()),
         Wrong::Black => (text::eyes::BLACK.get().to_owned(), text::eyes::BLACK_CURE.get()),
         Wrong::Late(late) => (text::eyes::late(*late), text::eyes::LATE_CURE.get()),
-        Wrong::Damaged(damage) => (text::eyes::damaged(&damage.to_string()), text::eyes::DAMAGED_CURE.get()),
+        Wrong::Damaged(damage) => (text::eyes::damaged(&crate::words::quoted(damage)), text::eyes::DAMAGED_CURE.get()),
         Wrong::Size(has, wanted) => (text::eyes::size(*has, *wanted), text::eyes::SIZE_CURE.get()),
     };
     [words, cure.to_owned()]
 }
 
-/// When the window has something else to say, though no picture came.
+/// Time until the text of the window changes without a new image.
 fn until_told(look: Option<&Newest>, is_good: bool) -> Duration {
     let age = look.and_then(|look| look.age).unwrap_or_default();
     let frozen = FROZEN.saturating_sub(age) + Duration::from_millis(2);

@@ -1,4 +1,4 @@
-//! Where the camera is: fixed in the workspace, or on the endoscope's marker, which the tracker sees.
+//! Pose of the camera: fixed in the workspace, or on the endoscope's marker, which the tracker sees.
 
 use nalgebra::Isometry3;
 use nima_core::frames::from_roll_pitch_yaw_deg;
@@ -6,10 +6,11 @@ use nima_endoscope::{Camera, Lens};
 use nima_machine::config::EndoscopeCamera;
 use nima_simulation::camera::{camera_of, lens_of};
 
-/// The tracker's noise is averaged over this time, s. At the tips, some decimetres from the marker, that of a single reading can be seen.
+/// Averaging time of the tracker's noise, s. At the tips, some decimetres from the marker, the noise of a single reading is
+/// visible.
 pub(super) const STEADY_S: f64 = 0.25;
 
-/// How the camera is held.
+/// Mounting of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mount {
     Fixed(Camera),
@@ -17,7 +18,7 @@ pub(super) enum Mount {
 }
 
 impl Mount {
-    /// As the rig file says; `None` where it does not say where the camera is.
+    /// From the rig file; `None` if it has no camera pose.
     pub(super) fn of(settings: &EndoscopeCamera) -> Option<Self> {
         if let Some((at_m, turn_deg)) = settings.n_from_camera_m.zip(settings.n_from_camera_deg) {
             let n_from_camera = Isometry3::from_parts(at_m.into(), from_roll_pitch_yaw_deg(&turn_deg));
@@ -26,7 +27,7 @@ impl Mount {
         settings.position_m.is_some().then(|| Self::Fixed(camera_of(settings)))
     }
 
-    /// The camera in the workspace, with its marker there; `None` where the marker's place is not known.
+    /// The camera in the workspace, with its marker; `None` while the pose of the marker is unknown.
     pub(super) fn camera(&self, world_from_n: Option<&Isometry3<f64>>) -> Option<Camera> {
         match self {
             Self::Fixed(camera) => Some(*camera),

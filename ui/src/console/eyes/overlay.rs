@@ -1,5 +1,6 @@
-//! Draws the forces into the picture: at each tip the measured force and, as a ring, the ceiling of what can reach the hand. Through the lens's
-//! own distortion, so that nothing has to be straightened. What the instrument hides is dim. Shapes and lightness tell them apart, not hues.
+//! Draws the forces in the image: at each tip the measured force as an arrow, and the force ceiling as a ring. They are drawn
+//! with the lens's distortion, so the image need not be undistorted. Parts behind the instrument are dim. Shapes and
+//! lightness distinguish the drawings, not hues.
 
 use std::f64::consts::TAU;
 
@@ -14,29 +15,29 @@ use crate::{
     words::newtons,
 };
 
-/// Length of an arrow, m per N; a force beyond the second is drawn no longer, N.
+/// Length of an arrow, m per N; a force above the second constant has an arrow of constant length, N.
 const M_PER_N: f64 = 0.005;
 const MOST_N: f64 = 8.0;
-/// A smaller force has no arrow, because it would show noise, N.
+/// A smaller force has no arrow, because the arrow would show noise, N.
 const LEAST_N: f64 = 0.15;
-/// Pieces of a line that the lens bends, and of the ring.
+/// Segments of a line that the lens bends, and of the ring.
 const PIECES: usize = 24;
 const RING_PIECES: usize = 48;
-/// Free space around a tip, points: the picture is never covered there.
+/// Free space around a tip, points: the image is never covered there.
 const FREE: f32 = 7.0;
 const ARROW: f32 = 3.0;
 const HEAD: f32 = 12.0;
 const RING: f32 = 1.5;
-/// What is left of a line that the instrument hides.
+/// Opacity of a line behind the instrument.
 const HIDDEN: f32 = 0.35;
 /// Half the side of the contact mark, and the length of its corners, points.
 const CONTACT: f32 = 15.0;
 const CORNER: f32 = 6.0;
-/// Distance of the sign of a tip beyond the view from its edge, points.
+/// Distance between the sign of a tip outside the view and the edge of the view, points.
 const EDGE: f32 = 26.0;
 const SHADE: Color32 = theme::VEIL;
 
-/// A picture, and what is drawn into it.
+/// An image, and its overlay.
 pub(super) struct Seen<'a> {
     pub(super) painter: &'a Painter,
     pub(super) place: &'a Place,
@@ -44,24 +45,25 @@ pub(super) struct Seen<'a> {
     pub(super) ceiling_n: f64,
 }
 
-/// An instrument in the picture.
+/// An instrument in the image.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instrument {
     pub(super) side: Side,
     pub(super) pose: Pose,
-    /// Where its shaft goes through the wall; `None` where that is not known.
+    /// Position of its trocar; `None` if unknown.
     pub(super) trocar_m: Option<Vector3<f64>>,
 }
 
-/// A stretch of a line on the screen.
+/// A segment of a line on the screen.
 struct Stretch {
     points: Vec<Pos2>,
-    /// The instrument hides it.
+    /// Behind the instrument.
     hidden: bool,
 }
 
 impl Seen<'_> {
-    /// Draws the forces unless they are hidden; gives the places of the tips. A tip beyond the edge of the view is told there.
+    /// Draws the forces unless they are hidden; returns the positions of the tips. A tip outside the view is marked at the
+    /// edge.
     pub(super) fn draw(&self, instruments: impl Iterator<Item = Instrument>, hidden: bool) -> Vec<Pos2> {
         let mut tips = Vec::new();
         for instrument in instruments {
@@ -79,12 +81,12 @@ impl Seen<'_> {
         tips
     }
 
-    /// Place of a point of the workspace on the screen.
+    /// Screen position of a point in the workspace.
     pub(super) fn at(&self, point_m: &Vector3<f64>) -> Option<Pos2> {
         self.camera.project(point_m).map(|place_px| self.place.at(&place_px))
     }
 
-    /// At the edge, towards a tip that is not in the view.
+    /// Draws a sign at the edge, towards a tip outside the view.
     fn beyond(&self, side: Side, tip: Pos2) {
         let inner = self.place.rect.shrink(EDGE);
         let at = tip.clamp(inner.min, inner.max);
@@ -99,7 +101,7 @@ impl Seen<'_> {
         self.label(at - out * 6.0, align, &text::eyes::tip(side_name(side)), 15.0, theme::DARK.text);
     }
 
-    /// Words that lie on this side of their place.
+    /// Alignment of a text on this side of its position.
     fn aligned(towards: f32) -> Align {
         if towards > 0.4 {
             Align::Min
@@ -110,8 +112,8 @@ impl Seen<'_> {
         }
     }
 
-    /// A line of the workspace as it is seen, in stretches that the instrument hides and does not hide; `None` where the lens does not see all
-    /// of it.
+    /// A line of the workspace as seen by the lens, in visible and hidden segments; `None` if the lens does not see all of
+    /// it.
     fn line(&self, points_m: &[Vector3<f64>], instrument: &Instrument) -> Option<Vec<Stretch>> {
         let lens_m = self.camera.world_from_camera.translation.vector;
         let shaft = instrument.trocar_m.map(|trocar_m| Shaft { tip_m: instrument.pose.tip_m, trocar_m });
@@ -122,7 +124,7 @@ impl Seen<'_> {
             match stretches.last_mut() {
                 Some(last) if last.hidden == hidden => last.points.push(point),
                 before => {
-                    // From where the other one ends, so that there is no gap.
+                    // Starts at the end of the previous segment, so that there is no gap.
                     let joint = before.and_then(|before| before.points.last().copied());
                     stretches.push(Stretch { points: joint.into_iter().chain([point]).collect(), hidden });
                 }
@@ -143,7 +145,7 @@ impl Seen<'_> {
         let Some(stretches) = self.line(&points_m, instrument) else { return };
         for Stretch { points, hidden } in stretches {
             self.painter.add(Shape::line(points.clone(), Stroke::new(RING + 2.0, seen_through(SHADE, hidden))));
-            // Dashes: nothing else in the picture has them.
+            // Dashes: nothing else in the image has them.
             let stroke = Stroke::new(RING, seen_through(theme::DARK.text, hidden));
             self.painter.extend(Shape::dashed_line(&points, stroke, 6.0, 5.0));
         }
@@ -204,7 +206,7 @@ impl Seen<'_> {
         self.label(place, align, &text::eyes::force(size_n), 17.0, colour);
     }
 
-    /// Something touches the tip: four corners around it, which leave it free.
+    /// Contact at the tip: four corners around it, which leave it free.
     fn contact(&self, tip: Pos2) {
         for (stroke, more) in [(SHADE, 2.0), (theme::DARK.text, 0.0)] {
             for (x, y) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
@@ -215,7 +217,7 @@ impl Seen<'_> {
         }
     }
 
-    /// Words with a dark outline on all sides.
+    /// Text with a dark outline on all sides.
     fn label(&self, place: Pos2, align: Align2, words: &str, size: f32, colour: Color32) {
         for shift in [vec2(1.5, 0.0), vec2(-1.5, 0.0), vec2(0.0, 1.5), vec2(0.0, -1.5)] {
             self.painter.text(place + shift, align, words, theme::strong(size), SHADE);
@@ -224,7 +226,7 @@ impl Seen<'_> {
     }
 }
 
-/// A colour where the instrument hides what has it.
+/// Colour of a part that may be behind the instrument.
 fn seen_through(colour: Color32, hidden: bool) -> Color32 {
     if hidden { colour.gamma_multiply(HIDDEN) } else { colour }
 }

@@ -1,4 +1,4 @@
-//! Where the picture is on the screen: cropped, mirrored and turned as the rig file says, as large as it can be or zoomed.
+//! Position of the image on the screen: cropped, mirrored and rotated as in the rig file, as large as possible or zoomed.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector2;
@@ -6,19 +6,18 @@ use nima_machine::config::Endoscope;
 
 use super::aim::Aim;
 
-/// What is left of a picture at least along a side, as a share.
+/// Minimum remaining part of an image along a side, as a fraction.
 const LEAST: f32 = 0.1;
 
-/// The picture on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
-    /// What of it is in the view.
+    /// Visible part.
     pub(super) rect: Rect,
-    /// From where to where it lies in the width of the whole picture.
+    /// Start and end of this part in the width of the whole image.
     share: [f32; 2],
-    /// Where all of what is not cut off would be.
+    /// Position of the whole uncropped area.
     pub(super) full: Rect,
-    /// What is not cut off, as shares of the picture's sides.
+    /// Uncropped area, as fractions of the image's sides.
     part: Rect,
     size_px: [usize; 2],
     rotation_deg: u16,
@@ -26,8 +25,8 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// In this view; `crop` cuts off so much at the left, top, right and bottom of the picture as it comes, as shares, unless the rig file
-    /// cuts off more.
+    /// In this view; `crop` cuts off these fractions at the left, top, right and bottom of the camera image, unless the rig
+    /// file cuts off more.
     pub(super) fn new(view: Rect, size_px: [usize; 2], endoscope: &Endoscope, crop: [f32; 4], aim: Aim) -> Self {
         let rotation_deg = endoscope.rotation_deg;
         let mirror = endoscope.mirror;
@@ -41,18 +40,18 @@ impl Place {
         Self { rect: full.intersect(view), full, part, share: [0.0, 1.0], size_px, rotation_deg, mirror }
     }
 
-    /// The same place for a part of a picture.
+    /// The same position for a part of an image.
     pub(super) const fn of_share(self, share: [f32; 2]) -> Self {
         Self { share, ..self }
     }
 
-    /// Where a pixel of the picture is.
+    /// Screen position of an image pixel.
     pub(super) fn at(&self, place_px: &Vector2<f64>) -> Pos2 {
         let [width, height] = self.size_px.map(|side| side as f64);
         self.turned(pos2((place_px.x / width) as f32, (place_px.y / height) as f32))
     }
 
-    /// The corners of what is not cut off, as shares of the whole picture's sides, and where they are.
+    /// Corners of the uncropped area, as fractions of the whole image's sides, and their positions.
     pub(super) fn corners(&self) -> [(Pos2, Pos2); 4] {
         let [from, to] = self.share;
         let Rect { min, max } = self.part;
@@ -73,7 +72,7 @@ impl Place {
     }
 }
 
-/// What is left of a picture. Edges that would leave nothing along a side are not cut off there.
+/// Remaining part of an image. Edges that would leave nothing along a side are not cropped there.
 fn part(size_px: [usize; 2], crop_px: [usize; 4], crop: [f32; 4]) -> Rect {
     let along = |low: usize, side: usize| {
         let edge = |edge: usize| {
@@ -116,7 +115,7 @@ mod tests {
         let near = |place: Place, x, y, corner: Pos2| (place.at(&Vector2::new(x, y)) - corner).length() < 1e-2;
         let turned = place(90, false);
         assert!(turned.rect.width() < turned.rect.height());
-        // Turned clockwise, the upper left corner is on the upper right.
+        // Rotated clockwise, the upper left corner is at the upper right.
         assert!(
             near(turned, 0.0, 0.0, turned.rect.right_top()) && near(turned, 1280.0, 0.0, turned.rect.right_bottom())
         );
@@ -141,7 +140,7 @@ mod tests {
         assert!(near(160.0, 0.0, place.rect.left_top()) && near(960.0, 720.0, place.rect.right_bottom()));
         let expected = [pos2(0.125, 0.0), pos2(0.75, 0.0), pos2(0.125, 1.0), pos2(0.75, 1.0)];
         assert!(place.corners().iter().zip(expected).all(|((share, _), corner)| (*share - corner).length() < 1e-6));
-        // What would leave nothing is not done.
+        // Settings that would leave nothing are ignored.
         let nothing = Place::new(view, [100, 720], &endoscope, [0.0, 0.6, 0.0, 0.6], Aim::default());
         assert_eq!(nothing.part, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)));
     }

@@ -1,17 +1,17 @@
-//! Words over the picture, where no tip is.
+//! Texts over the image, away from the tips.
 
 use egui::{Align2, Color32, Painter, Rect, vec2};
 
 use crate::console::theme;
 
-/// Size of the words about what is wrong, and of what to do, points.
+/// Font sizes of problem and remedy, points.
 const WRONG_SIZE: f32 = 24.0;
 const CURE_SIZE: f32 = 16.0;
-/// Distance of words from the edge of the picture, and from a tip, points.
+/// Distance of a text from the edge of the image, and from a tip, points.
 pub(super) const MARGIN: f32 = 16.0;
 const CLEAR: f32 = 24.0;
 
-/// What is wrong, large, and what to do.
+/// The problem, large, and the remedy.
 pub(super) fn wrong_ui(painter: &Painter, over: Rect, tips: &[egui::Pos2], [told, cure]: [&str; 2], colour: Color32) {
     let inner = over.shrink(MARGIN);
     let places = [
@@ -23,7 +23,7 @@ pub(super) fn wrong_ui(painter: &Painter, over: Rect, tips: &[egui::Pos2], [told
     plate(painter, &places, tips, &[(told, WRONG_SIZE, colour), (cure, CURE_SIZE, theme::DARK.text)]);
 }
 
-/// Words on a dark ground, legible over any tissue, at the first of these places that covers no tip.
+/// Text on a dark ground, readable over any tissue, at the first of these places that covers no tip.
 pub(super) fn plate(
     painter: &Painter,
     places: &[(egui::Pos2, Align2)],

@@ -1,4 +1,4 @@
-//! Where the tips and the endoscope's marker were in the last second and a half, so that what is drawn into a picture belongs to its moment.
+//! Poses of the tips and of the endoscope's marker in the last 1.5 s, so that drawings in an image belong to its time.
 
 use std::{
     collections::VecDeque,
@@ -14,15 +14,15 @@ use nima_machine::{
 
 use super::mount::STEADY_S;
 
-/// A marker that was last seen so long ago may be anywhere, s: some pictures of a tracker.
+/// A marker that was last seen before this time may be anywhere, s: some frames of a tracker.
 const UNSEEN_S: f64 = 0.2;
-/// Time between two poses that are kept, s, and how long they are, s.
+/// Time between two stored poses, s, and how long they are stored, s.
 const STEP_S: f64 = 0.005;
 const KEPT_S: f64 = 1.5;
 /// The loop's clock may run this much slower than the window's.
 const DRIFT: f64 = 1e-3;
 
-/// A tip and the force on it, where that is known, in the workspace.
+/// A tip and the force on it, if known, in the workspace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub(super) tip_m: Vector3<f64>,
@@ -32,10 +32,11 @@ pub(super) struct Pose {
 #[derive(Debug, Default)]
 pub(super) struct Poses {
     kept: [VecDeque<(f64, Pose)>; SIDES],
-    /// The endoscope's marker in the workspace (`world_from_n`), whichever side told it.
+    /// The endoscope's marker in the workspace (`world_from_n`), reported by either side.
     markers: VecDeque<(f64, Isometry3<f64>)>,
     begin: Option<Instant>,
-    /// Least time from a tick until the window had it, on the window's clock minus the loop's, s; and when it was last seen.
+    /// Minimum time from a tick to its arrival in the window, as window clock minus loop clock, s; and the time of the
+    /// measurement.
     offset_s: Option<(f64, f64)>,
 }
 
@@ -54,7 +55,7 @@ impl Poses {
             return;
         }
         let last_s = self.markers.back().map(|(last_s, _)| *last_s);
-        // A loop that was started again begins at zero.
+        // A restarted loop begins at zero.
         if last_s.is_some_and(|last_s| t_s < last_s - KEPT_S) {
             self.markers.clear();
         } else if last_s.is_some_and(|last_s| t_s < last_s + STEP_S) {
@@ -66,7 +67,7 @@ impl Poses {
         }
     }
 
-    /// The endoscope's marker when a picture was made that is so old now; `None` where the tracker did not see it then.
+    /// The endoscope's marker at the time of an image of this age; `None` if the tracker did not see it then.
     pub(super) fn marker(&self, now: Instant, age: Duration) -> Option<Isometry3<f64>> {
         let now_s = now.duration_since(self.begin?).as_secs_f64();
         self.marker_at(now_s - age.as_secs_f64())
@@ -85,7 +86,7 @@ impl Poses {
             return;
         }
         let kept = &mut self.kept[side.index()];
-        // A loop that was started again begins at zero.
+        // A restarted loop begins at zero.
         if kept.back().is_some_and(|(last_s, _)| t_s < *last_s) {
             kept.clear();
             self.offset_s = None;
@@ -101,7 +102,7 @@ impl Poses {
         }
     }
 
-    /// The pose of a side when a picture was made that is so old now.
+    /// The pose of a side at the time of an image of this age.
     pub(super) fn at(&self, side: Side, now: Instant, age: Duration) -> Option<Pose> {
         let now_s = now.duration_since(self.begin?).as_secs_f64();
         self.at_s(side, now_s - age.as_secs_f64())
@@ -131,7 +132,7 @@ mod tests {
         for tick in 0..3000 {
             let t_s = f64::from(tick) * 1e-3;
             let pose = Pose { tip_m: Vector3::new(t_s, 0.0, 0.0), measured_n: None };
-            // The window's clock is 7 s ahead, and it has the ticks of up to 16 ms at once.
+            // The window's clock is 7 s ahead, and the window receives the ticks of up to 16 ms at once.
             let now_s = 7.0 + f64::from(tick / 16 * 16 + 15) * 1e-3;
             poses.take(Side::Right, t_s, pose, now_s);
         }
@@ -151,7 +152,7 @@ mod tests {
         for tick in 0..1500 {
             let t_s = f64::from(tick) * 1e-3;
             poses.take(Side::Right, t_s, rest, 5.0 + t_s);
-            // It moves 5 mm at once after half a second, and is hidden after a second.
+            // The tip jumps by 5 mm after half a second, and is hidden after a second.
             let x_m = if tick < 500 { 0.0 } else { 0.005 };
             if tick < 1000 {
                 poses.take_marker(t_s, Isometry3::translation(x_m, 0.0, 0.0));

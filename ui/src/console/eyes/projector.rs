@@ -1,4 +1,4 @@
-//! The recorded picture of a moment of the past: found and decoded on a thread of its own, which shows the newest wish.
+//! The recorded image of a moment: found and decoded on a separate thread, which serves only the newest request.
 
 use std::{
     path::{Path, PathBuf},
@@ -22,26 +22,26 @@ use super::{mount::STEADY_S, poses::Pose};
 use crate::console::{chain, text};
 use crate::language;
 
-/// The tip of a picture is that of the last tick before it, within this time, ns.
+/// The tip pose of an image comes from the last tick before it, within this time, ns.
 const TICK_NS: u64 = 20_000_000;
 
-/// Damaged pictures in a row before which a whole one is looked for.
+/// Maximum number of consecutive damaged images before a whole one is searched for.
 const TRIED_MOST: usize = 10;
 
-/// What the thread has found for a moment.
+/// Result of the thread for a moment.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// The moment that was asked for, and when its picture came, s; `None`: there was none.
+    /// The requested moment, and the time of its image, s; `None`: no image.
     pub(super) asked_s: f64,
     pub(super) came_s: Option<f64>,
-    /// The last picture then that can be decoded, and its number.
+    /// The last decodable image at that time, and its number.
     picture: Option<(u64, Arc<Picture>)>,
     damage: Option<Damage>,
-    /// Tips and forces when it came.
+    /// Tips and forces at the time of the image.
     pub(super) poses: [Option<Pose>; SIDES],
-    /// The endoscope's marker when it came, where its place was known.
+    /// The endoscope's marker at the time of the image, if known.
     pub(super) world_from_n: Option<Isometry3<f64>>,
-    /// Why the session cannot be read there.
+    /// Reason why the session cannot be read there.
     trouble: Option<String>,
 }
 
@@ -58,7 +58,7 @@ fn locked(found: &Mutex<Option<Found>>) -> MutexGuard<'_, Option<Found>> {
 }
 
 impl Projector {
-    /// Opens the pictures of a session; `wake` is called when there is another one.
+    /// Opens the images of a session; `wake` is called when a new one is ready.
     pub(super) fn start(session: &Path, wake: impl Fn() + Send + 'static) -> Self {
         let (wishes, wanted) = channel();
         let found = Arc::default();
@@ -83,12 +83,12 @@ impl Projector {
                 wake();
             }
         };
-        // If no thread can be created, there is no picture.
+        // If no thread can be created, there is no image.
         Builder::new().name("projector".to_owned()).spawn(language::carried(work)).ok();
         Self { wishes, asked: (Tone::default(), f64::NAN), found }
     }
 
-    /// Shows this moment, s since the session began, so.
+    /// Requests the image of this moment, s since the start of the session.
     pub(super) fn show(&mut self, tone: Tone, t_s: f64) {
         if self.asked != (tone, t_s) {
             self.asked = (tone, t_s);
@@ -101,7 +101,7 @@ impl Projector {
     }
 }
 
-/// The newest wish; waits for one. `None` when the window has gone.
+/// Waits for the newest request. `None` after the window has closed.
 fn newest(wanted: &Receiver<(Tone, f64)>) -> Option<(Tone, f64)> {
     let first = wanted.recv().ok()?;
     Some(wanted.try_iter().last().unwrap_or(first))
@@ -115,7 +115,7 @@ impl Found {
         Self { asked_s, came_s, picture, damage, poses: [None; SIDES], world_from_n: None, trouble: Some(why) }
     }
 
-    /// As of a feed at that moment; why there is nothing to see.
+    /// Result as from a feed at that moment; an error if there is no image.
     pub(super) fn look(&self) -> Result<Look<Arc<Picture>>, Option<&str>> {
         let Some(came_s) = self.came_s.filter(|_| self.picture.is_some() || self.damage.is_some()) else {
             return Err(self.trouble.as_deref());
@@ -134,14 +134,14 @@ impl Found {
 struct Projection {
     pictures: Pictures,
     session: PathBuf,
-    /// The picture that was decoded last, and its time, ns.
+    /// The last decoded image, and its time, ns.
     shown: Option<(u64, Found)>,
     number: u64,
     tone: Tone,
     stream: Stream,
 }
 
-/// A stream's decoder, and the picture where it stands, ns.
+/// A stream's decoder, and the image at its position, ns.
 #[derive(Default)]
 struct Stream {
     decoder: h264::Decoder,
@@ -149,7 +149,7 @@ struct Stream {
 }
 
 impl Stream {
-    /// Shows the picture of this time: decodes all that it refers to.
+    /// Shows the image of this time: decodes all images that it depends on.
     fn show(&mut self, pictures: &Pictures, time_ns: u64) -> Result<Picture, Damage> {
         let damaged = |reason: String| Damage::Undecodable { reason };
         let units = pictures.leading_to(time_ns, self.stands_ns, h264::is_key);
@@ -213,7 +213,7 @@ impl Projection {
         Found { asked_s: t_s, came_s: Some(came_s), picture, damage, poses, world_from_n, trouble: None }
     }
 
-    /// As then, the last whole one stays where one is damaged.
+    /// As during the recording, the last whole image is shown instead of a damaged one.
     fn whole_before(&mut self, time_ns: u64) -> Option<Picture> {
         let mut before_ns = time_ns;
         for _ in 0..TRIED_MOST {
@@ -227,13 +227,13 @@ impl Projection {
         None
     }
 
-    /// Where the endoscope's marker was then.
+    /// Pose of the endoscope's marker at that time.
     fn marker(&self, time_ns: u64) -> Option<Isometry3<f64>> {
         let times_ns = time_ns.saturating_sub((STEADY_S * 1e9) as u64)..time_ns.saturating_add(1);
         steadied(plotted::endoscope(self.pictures.reader(), times_ns).into_iter().rev())
     }
 
-    /// Where the tips were then; none where that is not plotted or cannot be read.
+    /// Poses of the tips at that time; none if they are not recorded or cannot be read.
     fn poses(&self, time_ns: u64) -> [Option<Pose>; SIDES] {
         let reader = self.pictures.reader();
         let times_ns = time_ns.saturating_sub(TICK_NS)..time_ns.saturating_add(1);

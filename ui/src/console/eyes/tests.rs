@@ -15,7 +15,7 @@ use nima_simulation::{
 
 use super::{overlay::Seen, *};
 
-/// Bright green, which nothing else in the picture is.
+/// Bright green, which nothing else in the image has.
 fn is_mark(pixel: &[u8]) -> bool {
     pixel[1] > 150 && pixel[0] < 90 && pixel[2] < 150
 }
@@ -33,7 +33,7 @@ fn now_us() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64
 }
 
-/// A picture that was made after this moment.
+/// An image that was taken after this time.
 fn picture_after(feed: &Feed, begin_us: u64) -> Arc<Picture> {
     let begin = Instant::now();
     loop {
@@ -85,7 +85,7 @@ fn scene_trocar() -> Vector3<f64> {
     Vector3::new(0.05, -0.06, 0.14)
 }
 
-/// The filled rectangles that a plate leaves.
+/// The filled rectangles that a text plate leaves.
 fn plates(tips: &[Pos2]) -> Vec<Rect> {
     let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(900.0, 470.0));
     let mut plates = Vec::new();

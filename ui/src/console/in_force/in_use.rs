@@ -1,9 +1,9 @@
-//! How a network for the tip force has done while it was in use: the only sign that it does not fit the work any more.
+//! Performance of a tip-force network in use: the only sign that it no longer fits the work.
 
 use nima_core::tip_force::Unsure;
 use nima_machine::messages::{ForceSource, LoopState, Tick};
 
-/// Ticks of use after which the shares say something: 10 s at 1 kHz.
+/// Ticks of use after which the fractions are meaningful: 10 s at 1 kHz.
 const ENOUGH: u64 = 10_000;
 
 /// Counts the ticks with force since the loop started.
@@ -14,17 +14,16 @@ pub(super) struct InUse {
     without: u64,
 }
 
-/// Shares of the time with force, 0 to 1.
+/// Fractions of the time with force, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shares {
-    /// Outside the training data, where the network's linear path answers alone.
+    /// Outside the training data, where only the network's linear path is used.
     pub(super) outside: f64,
     /// So far outside that the network was not used.
     pub(super) without: f64,
 }
 
 impl InUse {
-    /// Adds one tick.
     pub(super) fn watch(&mut self, tick: &Tick) {
         if tick.state != LoopState::Engaged {
             return;
@@ -33,7 +32,7 @@ impl InUse {
             ForceSource::Network | ForceSource::InDoubt { unsure: Unsure::NotMoved | Unsure::Missing, .. } => (0, 0),
             ForceSource::Extrapolated => (1, 0),
             ForceSource::InDoubt { unsure: Unsure::OutsideTraining, .. } => (0, 1),
-            // No network is in force.
+            // No network is active.
             _ => return,
         };
         self.ticks += 1;
@@ -41,7 +40,7 @@ impl InUse {
         self.without += without;
     }
 
-    /// The shares; `None` until there was enough use.
+    /// `None` until there was enough use.
     pub(super) fn shares(&self) -> Option<Shares> {
         let share = |count: u64| count as f64 / self.ticks as f64;
         (self.ticks >= ENOUGH).then(|| Shares { outside: share(self.outside), without: share(self.without) })

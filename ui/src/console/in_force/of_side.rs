@@ -1,4 +1,4 @@
-//! The calibrations in force on one side, for one wrist sensor with one tool.
+//! The active calibrations of one side, for one wrist sensor with one tool.
 
 use std::{path::PathBuf, time::SystemTime};
 
@@ -38,7 +38,7 @@ pub(super) enum Bound {
     Nothing,
     /// The sensor has not reported its identity yet.
     Waiting,
-    /// The sensor cannot report its identity: why, and what to do.
+    /// The sensor cannot report its identity: cause and remedy.
     Nameless(&'static str),
     /// This sensor with this tool.
     To(WristId),
@@ -59,9 +59,9 @@ pub(super) struct OfSide {
     others: Vec<String>,
     gravity: Option<Loaded<GravityRecord>>,
     tip_force: Option<Loaded<Model>>,
-    /// Result of the check of the bias since the loop started, and its time.
+    /// Result of the bias check since the loop started, and its time.
     drift: Option<(DriftCheck, String)>,
-    /// How the network has done since the loop started.
+    /// Performance of the network since the loop started.
     in_use: InUse,
 }
 
@@ -84,7 +84,6 @@ impl OfSide {
         this
     }
 
-    /// Sensor and tool, once known.
     pub(super) const fn wrist(&self) -> Option<&WristId> {
         match &self.bound {
             Bound::To(wrist) => Some(wrist),
@@ -92,12 +91,12 @@ impl OfSide {
         }
     }
 
-    /// Sensor and tool, if they are known and there is no gravity calibration for them.
+    /// Sensor and tool, if they are known and have no gravity calibration.
     pub(super) fn without_gravity(&self) -> Option<&WristId> {
         self.wrist().filter(|_| self.gravity.is_none())
     }
 
-    /// The gravity calibration, and the limit of the force that remains at rest, N.
+    /// The gravity calibration, and the limit of the remaining force at rest, N.
     pub(super) fn gravity(&self) -> Option<(GravityModel, f64)> {
         self.gravity.as_ref().map(|loaded| (loaded.record.model, loaded.record.drift_limit_n()))
     }
@@ -157,7 +156,7 @@ impl OfSide {
         ages.contains(&Some(Age::Future))
     }
 
-    /// Names of the calibrations that are missing. The correspondence is needed only to train the network.
+    /// Names of the missing calibrations. The correspondence is needed only to train the network.
     pub(super) fn lacks(&self) -> Vec<&'static str> {
         let correspondence = self.correspondence.is_some() || self.tip_force.is_some();
         let needed = [
@@ -174,7 +173,7 @@ impl OfSide {
         self.without_gravity().filter(|_| self.others.contains(other))
     }
 
-    /// Problems and what can be done; `across` is the wrist sensor of the other arm.
+    /// Problems and remedies; `across` is the wrist sensor of the other arm.
     pub(super) fn told(&self, across: Option<&WristId>) -> Option<String> {
         let elsewhere = |sensor: &&str| across.is_none_or(|across| across.serial_number != *sensor);
         let others: Vec<_> = self.others.iter().map(String::as_str).filter(elsewhere).collect();
@@ -187,8 +186,8 @@ impl OfSide {
         })
     }
 
-    /// Adds one tick of this side: in the first seconds, idle and still, it shows whether the bias has changed; engaged, whether the
-    /// network fits the work.
+    /// Adds one tick of this side. In the first seconds, idle and still, ticks show whether the bias has changed; engaged,
+    /// whether the network fits the work.
     pub(super) fn watch(&mut self, tick: &Tick) {
         self.in_use.watch(tick);
         let Some((check, found_at)) = &mut self.drift else { return };
@@ -204,7 +203,7 @@ impl OfSide {
         }
     }
 
-    /// Result of the check of the bias; `None` if there is nothing to check.
+    /// Result of the bias check; `None` if there is nothing to check.
     pub(super) fn drift(&self) -> Option<Drift> {
         self.drift.as_ref().map(|(check, _)| check.drift())
     }
@@ -220,7 +219,7 @@ impl OfSide {
         }
     }
 
-    /// Saves a record and puts it in force; returns its path.
+    /// Saves a record and activates it; returns its path.
     pub(super) fn save(&mut self, store: &Store, saving: Saving) -> Result<PathBuf, String> {
         let path = match saving {
             Saving::Gravity(record) => kept(store, *record, &mut self.gravity)?,
@@ -238,7 +237,7 @@ impl OfSide {
         Ok(path)
     }
 
-    /// One line for each calibration that matters on this side; the side is named if there are two.
+    /// One line for each calibration that this side needs; with its name if there are two sides.
     pub(super) fn lines(&self, side: Option<&str>) -> Vec<String> {
         let of_side = |words: String| side.map_or_else(|| words.clone(), |side| format!("{side}: {words}"));
         let wrist = match &self.bound {
@@ -282,7 +281,7 @@ fn usable<R>(
     })
 }
 
-/// Saves a record and puts it in force; returns its path.
+/// Saves a record and activates it; returns its path.
 fn kept<R: Record>(store: &Store, record: R, in_force: &mut Option<Loaded<R>>) -> Result<PathBuf, String> {
     let path = store.save(&record).map_err(|error| chain(&error))?;
     *in_force = Some(Loaded { record, age: Age::Fresh, path: path.clone() });

@@ -1,4 +1,4 @@
-//! Which calibrations are in force: determined by the rig's sensors and tools, never by the scene.
+//! The active calibrations: determined by the rig's sensors and tools, never by the scene.
 
 use std::{
     path::Path,
@@ -17,7 +17,7 @@ use nima_tests::gravity;
 
 use super::*;
 
-/// The simulated gravity calibration, as if made with this sensor and tool.
+/// The simulated gravity calibration, for this sensor and tool.
 fn record(sensor: &str, tool: &str) -> GravityRecord {
     static MADE: std::sync::OnceLock<GravityRecord> = std::sync::OnceLock::new();
     let made = MADE.get_or_init(gravity::gravity).clone();
@@ -168,7 +168,7 @@ fn sensor(serial: &str, port: &std::path::Path) -> Serving {
     sensor.with(Box::new(|_| ForceReading::default())).serve().unwrap()
 }
 
-/// A loop on a rig with devices, and the calibrations that the console puts in force.
+/// A loop on a rig with devices, and the calibrations that the console activates.
 struct Bench {
     handle: Handle,
     in_force: InForce,

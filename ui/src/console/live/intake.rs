@@ -54,7 +54,7 @@ impl Live {
         self.refresh_figures();
     }
 
-    /// Takes in what a recorded session tells of a tick.
+    /// Adds the content of a recorded session for a tick.
     pub(in crate::console) fn replay<'a>(
         &mut self,
         events: impl Iterator<Item = &'a Event>,
@@ -64,7 +64,7 @@ impl Live {
         ticks.iter().flatten().for_each(|tick| self.tick(tick));
     }
 
-    /// Brings the figures up to date with the ticks of a recorded session, which took this time, s.
+    /// Updates the figures from the ticks of a recorded session, which took this time, s.
     pub(in crate::console) fn settle(&mut self, seconds: f64) {
         self.refresh_readings();
         self.refresh_others(seconds);
@@ -73,7 +73,7 @@ impl Live {
     fn event(&mut self, event: &Event) {
         match *event {
             Event::FaultRaised { t_s, fault, .. } => {
-                // Both arms may tell in the same tick, first the one that only follows the other.
+                // Both arms may report in the same tick, first the one that only follows the other.
                 match self.first_fault {
                     Some((_, first)) if first != Fault::OtherArm || fault == Fault::OtherArm => {}
                     _ => self.first_fault = Some((t_s, fault)),
@@ -129,7 +129,7 @@ impl Live {
         if identification.modes.contains(Mode::Literal) {
             self.paper_degrees.push(identification.paper_degree);
         }
-        // Without a measured force there is nothing to err from.
+        // Without a measured force there is no error.
         let errors_n = tick.known_n().map(|_| identification.horizon_error_n);
         if before.is_some_and(|before| before.t_s.floor() < tick.t_s.floor()) {
             self.trend_n.push_back(errors_n.unwrap_or([f64::NAN; SLOTS]));
@@ -192,7 +192,6 @@ impl Live {
         self.readings_at = Instant::now();
     }
 
-    /// Torque about the shaft of this side.
     fn twist(&self, side: Side) -> Option<Twist> {
         let tick = self.tick_of(side)?;
         let trocar_m = self.scene.of_side(side)?.trocar_m;
@@ -205,7 +204,7 @@ impl Live {
         })
     }
 
-    /// All other figures; the ticks since the last time took so many seconds.
+    /// All other figures; the ticks since the last time covered this time, s.
     fn refresh_others(&mut self, seconds: f64) {
         self.figures = Figures {
             horizon_n: self.horizon.map(Fading::known),
@@ -225,7 +224,7 @@ impl Live {
     }
 }
 
-/// The forces of a tick, N, in the order of their channels; no numbers where they are not known.
+/// The forces of a tick, N, in the order of their channels; NaN if unknown.
 pub(in crate::console) fn forces_of(tick: &Tick) -> [f32; CHANNELS] {
     let m = tick.measured_n;
     let r = tick.rendered_n;

@@ -1,4 +1,4 @@
-//! All calibrations of a rig in one list: of every arm with its sensor, how old each is, its verdict and what has changed since.
+//! All calibrations of a rig in one list: for every arm with its sensor, the age of each, its verdict, and later changes.
 
 mod page;
 #[cfg(test)]
@@ -24,7 +24,7 @@ use super::{
 };
 use crate::words::{Words as _, check_name};
 
-/// A calibration that was made.
+/// A saved calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Kept {
     /// UTC, ISO 8601.
@@ -40,14 +40,14 @@ pub(crate) struct Kept {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Line {
     pub(crate) wanted: Wanted,
-    /// What is kept; `None` if it was never made, an error if its file cannot be used.
+    /// `None` if it was never calibrated, an error if its file cannot be used.
     pub(crate) kept: Result<Option<Kept>, String>,
-    /// What has changed since.
+    /// Changes since the calibration.
     pub(crate) since: String,
 }
 
 impl Line {
-    /// Whether nothing needs to be done: it is proven, and neither old nor overridden.
+    /// Whether nothing needs to be done: proven, and neither old nor overridden.
     fn is_in_order(&self) -> bool {
         let Ok(Some(kept)) = &self.kept else { return false };
         let is_proven = |judgement: &Judgement| judgement.allows() && judgement.override_by.is_none();
@@ -55,23 +55,22 @@ impl Line {
     }
 }
 
-/// The list of an arm.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OfArm {
     pub(crate) side: Side,
-    /// Its sensor and tool; `None` until the sensor has told who it is.
+    /// Its sensor and tool; `None` until the sensor has reported its identity.
     pub(crate) wrist: Option<WristId>,
     pub(crate) lines: Vec<Line>,
 }
 
-/// The list of every arm that has calibrations, of the rig of this name.
+/// The list of every arm with calibrations, for the rig of this name.
 pub(crate) fn overview(in_force: &InForce, rig: &RigConfig, name: &str) -> Vec<OfArm> {
     let has_joints = rig.devices.is_some();
     let last = in_force.store().and_then(|store| store.last_check(&rig.name));
     let file = RigFile::of(name).ok();
     let sides = Side::ALL.into_iter().filter(|side| in_force.is_at_wrist(*side));
     let of_arm = |side: Side| {
-        // Without the sensor nobody knows which calibrations are those of this arm.
+        // Without the sensor the calibrations of this arm are unknown.
         let wrist = in_force.wrist(side).cloned();
         let mut lines = Vec::new();
         if let (true, Some(store), Some(wrist)) = (has_joints, in_force.store(), &wrist) {
@@ -83,8 +82,8 @@ pub(crate) fn overview(in_force: &InForce, rig: &RigConfig, name: &str) -> Vec<O
     sides.map(of_arm).collect()
 }
 
-/// What is to be calibrated after this one (from the first on without one): the first that is not in order. What was made just now
-/// is not asked for again.
+/// The next calibration after this one (from the start without one): the first that needs work. The one just saved is not
+/// suggested again.
 pub(crate) fn following(arms: &[OfArm], after: Option<Wanted>) -> Option<Wanted> {
     let all: Vec<&Line> = arms.iter().flat_map(|arm| &arm.lines).collect();
     let from = all.iter().position(|line| Some(line.wanted) == after).map_or(0, |place| place + 1);
@@ -121,16 +120,16 @@ impl From<FrameKept> for Kept {
     }
 }
 
-/// Whether the rig file still has what the calibration wrote into it.
+/// Whether the rig file still has the values that the calibration wrote.
 fn in_file(kept: &FrameKept, file: Option<&RigFile>) -> String {
     let Some(file) = file.filter(|_| !kept.rig.is_empty()) else { return text::overview::NOT_WATCHED.get().to_owned() };
     let same = kept.rig.iter().all(|change| file.value(&change.key) == change.after);
     if same { text::overview::IN_FILE.get() } else { text::overview::OTHER_IN_FILE.get() }.to_owned()
 }
 
-/// What the last ready check has found of this, if it was made after the calibration of this date.
+/// Result of the last ready check for this point, if it was run after the calibration of this date.
 pub(crate) fn found_since(last: Option<&ReadyRecord>, check: Check, date: &str) -> Option<String> {
-    // Dates of this form are ordered as texts.
+    // Dates of this form sort as text.
     let last = last.filter(|last| last.date.as_str() >= date)?;
     let item = last.items.iter().find(|item| item.check == check_name(check))?;
     let found = match (item.outcome, item.value.zip(item.limit), &item.cause) {
@@ -147,7 +146,6 @@ fn day(date: &str) -> &str {
     date.split('T').next().unwrap_or_default()
 }
 
-/// When it was made and how old it is.
 fn made_words(kept: &Kept) -> String {
     let age = match kept.age {
         Age::Future => text::overview::FUTURE.get().to_owned(),
@@ -158,7 +156,6 @@ fn made_words(kept: &Kept) -> String {
     text::overview::made(day(&kept.date), &age)
 }
 
-/// Its verdict and its error, or who has overridden the verdict.
 fn verdict_words(kept: &Kept) -> String {
     let Some(judgement) = &kept.judgement else { return text::overview::UNCHECKED.get().to_owned() };
     let words = text::overview::verdict(judgement.verdict.words(), &kept.error);

@@ -11,10 +11,10 @@ use crate::console::{
 };
 use crate::words::within;
 
-/// Widths of the columns of words.
+/// Widths of the text columns.
 const WIDTHS: [f32; 3] = [150.0, 260.0, 260.0];
 
-/// Draws the page; returns the calibration that is to be made. With a reason in `closed` none can be.
+/// Draws the page; returns the calibration to start. With a reason in `closed` none can be started.
 pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
     ui.label(RichText::new(text::overview::TITLE.get()).font(theme::strong(22.0)));
     ui.label(small(text::overview::MEANING.get()));
@@ -57,7 +57,7 @@ pub(crate) fn overview_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> 
     wish
 }
 
-/// The button that opens what is to be calibrated next.
+/// The button that opens the next calibration.
 fn following_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wanted> {
     let wanted = following(arms, None)?;
     let name = RichText::new(GoOn::Calibrate(wanted).words()).font(theme::strong(15.0));
@@ -68,7 +68,7 @@ fn following_ui(ui: &mut Ui, arms: &[OfArm], closed: Option<&str>) -> Option<Wan
     button.on_disabled_hover_text(closed.unwrap_or_default()).clicked().then_some(wanted)
 }
 
-/// One line; returns whether it is to be repeated.
+/// One line; returns whether to recalibrate.
 fn line_ui(ui: &mut Ui, line: &Line, arm: &str, closed: Option<&str>) -> bool {
     let (what, colour) = if line.is_in_order() {
         (Sign::Disc, theme::now().engaged)

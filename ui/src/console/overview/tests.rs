@@ -1,4 +1,4 @@
-//! The list of calibrations: what was made with its age and verdict, what was never made, what cannot be used.
+//! The list of calibrations: saved ones with age and verdict, missing ones, and unusable ones.
 
 use nima_core::calibration::{RecordHead, Verdict, gravity::GravityRecord};
 use nima_machine::{config::RigConfig, ready::Check, rig::Side};
@@ -77,7 +77,7 @@ fn a_ready_check_tells_what_has_changed_since_if_it_was_later() {
         items: vec![item],
     };
     let since = |side, date: &str| found_since(Some(&check), Check::Trocar(side), date);
-    let words = Some("ready check of 2026-08-21: 0.31 mm, limit 1.00".to_owned());
+    let words = Some("ready check on 2026-08-21: 0.31 mm, limit 1.00".to_owned());
     assert_eq!(since(Side::Left, "2026-08-20T10:20:30Z"), words);
     assert_eq!(since(Side::Left, &utc_now()), None, "calibrated after the check");
     assert_eq!(since(Side::Right, "2026-08-20T10:20:30Z"), None);
@@ -107,7 +107,7 @@ fn what_is_to_be_calibrated_next_is_the_first_that_is_not_in_order_after_what_wa
     let after = |side, which| Some(wanted(side, which));
     assert_eq!(next([&good, &good], [&missing, &missing], after(right, tip)), after(left, tip));
     assert_eq!(next([&missing, &good], [&good, &good], after(left, Which::Gravity)), after(right, tip));
-    // What was kept without proof is not asked for again at once.
+    // A calibration accepted without proof is not suggested again at once.
     assert_eq!(next([&good, &missing], [&good, &good], after(right, Which::Gravity)), None);
     assert_eq!(next([&good; 2], [&good; 2], None), None);
 }

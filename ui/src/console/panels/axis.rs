@@ -6,8 +6,8 @@ use egui_plot::{GridInput, GridMark};
 
 use crate::words::newtons;
 
-/// Marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are legible
-/// however small the plot is.
+/// Marks at round values over the range of an axis, at least `apart` points apart, so that the numbers are readable however
+/// small the plot is.
 pub(super) fn marks(grid: &GridInput, apart: f64) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     // egui_plot's base step is 8 points long.
@@ -36,7 +36,7 @@ pub(super) fn signed(value: f64) -> String {
     if text == "-0.00" || text == "+0.00" { "0.00".to_owned() } else { text }
 }
 
-/// The same with its unit, or the sign for one that is not known.
+/// Like [`signed`], with the unit, or the sign for an unknown force.
 pub(super) fn signed_n(force_n: Option<f64>) -> String {
     force_n.map_or_else(|| newtons(None, 2), |force_n| format!("{} N", signed(force_n)))
 }

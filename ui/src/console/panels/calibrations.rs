@@ -1,5 +1,5 @@
-//! The calibrations in force between wrist sensor and tip force, shown in every view; and buttons that open the
-//! wizards.
+//! The Calibration panel: active calibrations between wrist sensor and tip force, shown in every view, and buttons that open
+//! the wizards.
 
 use egui::{Button, Label, RichText, TextStyle, Ui, vec2};
 use nima_machine::{
@@ -24,11 +24,8 @@ use crate::{
 /// A request of the technician.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationWish {
-    /// Open this wizard.
     Open(Which),
-    /// Open the ready check.
     Check,
-    /// Open the list of all calibrations.
     List,
     /// Select the wrist sensor of this arm.
     Choose(Side),
@@ -36,18 +33,15 @@ pub enum CalibrationWish {
     Close,
 }
 
-/// What is open beside the panel.
+/// The page next to the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Page {
-    /// A wizard.
     Wizard(Which),
-    /// The ready check.
     Check,
-    /// The list of all calibrations.
     All,
 }
 
-/// The panel; `open` is the page that is open beside it.
+/// The panel; `open` is the page next to it.
 pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Option<Page>) -> Option<CalibrationWish> {
     let closed = text::calibrations::closed(live.state());
     let mut wish = rig_ui(ui, live, open);
@@ -60,7 +54,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     if live.is_bimanual() {
         wish = side_ui(ui, in_force.side()).or(wish);
     }
-    // The frames are those of an arm with joints.
+    // Only an arm with joints has frames.
     let has_arm = live.rig.devices.is_some();
     let offered = |which: &Which| match which {
         Which::Camera => live.rig.endoscope.is_some(),
@@ -83,7 +77,7 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
             wish = Some(CalibrationWish::Close);
         }
     }
-    // Below the buttons, which must not move under a hand when a sensor comes or goes.
+    // Below the buttons, which must not move under a hand when a sensor connects or disconnects.
     ui.add_space(4.0);
     for line in in_force.lines() {
         ui.label(small(line));
@@ -91,8 +85,8 @@ pub fn calibrations_ui(ui: &mut Ui, live: &Live, in_force: &InForce, open: Optio
     wish
 }
 
-/// What concerns the whole rig: the ready check and the list of all calibrations. Of a rig with devices, one of them is what is to be done
-/// before it can be engaged.
+/// Controls for the whole rig: the ready check and the list of all calibrations. On a rig with devices, the one required
+/// before engaging stands out.
 fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWish> {
     let mut wish = None;
     let closed = text::calibrations::closed(live.state());
@@ -128,7 +122,7 @@ fn rig_ui(ui: &mut Ui, live: &Live, open: Option<Page>) -> Option<CalibrationWis
     wish
 }
 
-/// What is to be done before a rig that is idle can be engaged: a calibration that is missing, then the ready check. Where the force is
+/// The page to complete before an idle rig can be engaged: a missing calibration, then the ready check. If the force is
 /// unknown for another reason, neither helps.
 fn next_page(live: &Live) -> Option<Page> {
     let is_idle = live.state() == LoopState::Idle;

@@ -1,4 +1,5 @@
-//! The identified polynomial degrees: which one, how often it is nonlinear, and how well the motion determines it.
+//! The identified polynomial degrees: the current one, the fraction of nonlinear ones, and how well the motion determines
+//! them.
 
 use crate::console::text;
 use egui::{Align2, Rect, Sense, Ui, vec2};
@@ -14,7 +15,6 @@ use crate::words::three_digits;
 
 const CHART_HEIGHT: f32 = 92.0;
 
-/// The panel.
 pub fn degrees_ui(ui: &mut Ui, live: &Live) {
     let compares = live.first_tick().is_some_and(|tick| tick.identification.modes.contains(Mode::Literal));
     ui.horizontal(|ui| {
@@ -73,7 +73,7 @@ fn key_ui(ui: &mut Ui, colour: egui::Color32, name: &str, meaning: &str) {
     ui.label(small(name)).on_hover_text(meaning);
 }
 
-/// Six pairs of bars, degrees 0 to 5, with their shares above.
+/// Six pairs of bars, degrees 0 to 5, with their percentages above.
 fn chart_ui(ui: &mut Ui, live: &Live, compares: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), CHART_HEIGHT + 20.0), Sense::hover());
     let ours = live.degrees.shares();

@@ -1,7 +1,7 @@
 //! Settings of the force feedback: mode, gain, delay, dead band, standstill.
 //!
-//! Controls show the values in force as reported by the loop. While a control is being moved, and for a moment after,
-//! it shows the requested value.
+//! Controls show the active values reported by the loop. While a control is being moved, and for a moment after, it shows the
+//! requested value.
 
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima_core::{
@@ -21,16 +21,15 @@ use crate::{
     words::{mode_meaning, mode_name},
 };
 
-/// How long a control shows the requested value before it shows the value in force again, s: the gain ramps at 2 per
-/// second.
+/// How long a control shows the requested value before it shows the active value again, s: the gain ramps at 2 per second.
 const ASKED_SHOWN_S: f64 = 1.6;
 
-/// A requested value and when it was requested (s on the window's clock).
+/// A requested value and the time of the request (s on the window's clock).
 #[derive(Clone, Copy, Debug, Default)]
 struct Asked(Option<(f64, f64)>);
 
 impl Asked {
-    /// The value that a control shows at `time_s`, given the value in force.
+    /// The value that a control shows at `time_s`, given the active value.
     fn shown(&mut self, in_force: f64, time_s: f64) -> f64 {
         match self.0 {
             Some((value, at_s)) if time_s - at_s < ASKED_SHOWN_S && (value - in_force).abs() > 1e-6 => value,
@@ -42,7 +41,6 @@ impl Asked {
     }
 }
 
-/// State of the panel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FeedbackState {
     allow_above_one: bool,
@@ -51,7 +49,6 @@ pub struct FeedbackState {
     dead_band_mm_s: Asked,
 }
 
-/// The panel.
 pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outbox: &mut Outbox) {
     mode_ui(ui, live, outbox);
     ui.add_space(4.0);
@@ -66,7 +63,7 @@ fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
     let rows: [&[Mode]; 3] =
         [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal, Mode::Linear]];
-    // A method of others is computed, and offered, only where the rig file names it.
+    // A baseline method is computed, and offered, only if the rig file names it.
     let baseline: &[Mode] = match &live.rig.mode {
         baseline @ Mode::Baseline(_) => std::slice::from_ref(baseline),
         _ => &[],
@@ -105,8 +102,8 @@ fn setting_ui(
     asked: &mut Asked,
 ) -> (Option<f64>, egui::Rect) {
     let time_s = ui.input(|input| input.time);
-    // Rounded for display here, because a widget that rounds or clamps by itself would report an edit, and the window
-    // would send a setting that nobody chose.
+    // Rounded for display here: a widget that rounds or clamps would report an edit, and the window would send a setting that
+    // no one chose.
     let step = 10f64.powi(-i32::from(setting.decimals));
     let whole = |value: f64| (value / step).round() * step;
     let mut value = whole(asked.shown(in_force, time_s));

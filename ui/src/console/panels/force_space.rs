@@ -1,6 +1,5 @@
-//! Measured and rendered force as points in three dimensions: those of the last seconds, the ceiling as a sphere, and
-//! the ellipsoid that contains 95 % of their difference. Rotated by dragging; drawn by egui's painter, so that it looks
-//! the same with and without a GPU.
+//! Measured and rendered force as points in 3-D: the last seconds, the ceiling as a sphere, and the ellipsoid that contains
+//! 95 % of their differences. Rotated by dragging; drawn by egui's painter, so that it looks the same with and without a GPU.
 
 use std::f32::consts::TAU;
 
@@ -22,13 +21,14 @@ const CAPTION: f32 = 40.0;
 const LEAST_N: f32 = 0.75;
 const RING: u32 = 48;
 
-/// State of the panel: direction of view and radius.
+/// Direction of view, and radius.
 #[derive(Clone, Copy, Debug)]
 pub struct ForceSpaceState {
     yaw: f32,
     pitch: f32,
     reach_n: f32,
-    /// The error's ellipsoid, and of how many samples until when (s) it was computed: more of the past may come later.
+    /// The error ellipsoid, with the number and the end time (s) of the samples from which it was computed: older samples may
+    /// be added later.
     ellipsoid: (usize, f64, Option<Ellipsoid>),
 }
 
@@ -91,7 +91,7 @@ pub fn force_space_ui(ui: &mut Ui, live: &Live, side: Side, state: &mut ForceSpa
     ceiling(&painter.with_clip_rect(place), &view, live.gate_settings().ceiling_n as f32);
     for (colour, width, rendered) in [(theme::now().measured, 2.2, false), (theme::now().rendered, 1.6, true)] {
         let force_n = |pair: &Pair| if rendered { pair.rendered_n } else { pair.measured_n };
-        // A line for each time in which the measured force was known.
+        // One line for each interval in which the measured force was known.
         for run in pairs.chunk_by(|before, after| after.t_s - before.t_s < GAP_S) {
             let points = run.iter().map(|pair| view.place(&force_n(pair).cast())).collect();
             painter.line(points, Stroke::new(width, colour.gamma_multiply(0.75)));

@@ -1,7 +1,7 @@
 //! Measured and rendered force over time, x, y and z, on a common time axis.
 //!
-//! The view is a time interval counted back from now (or from the moment of the pause). It is moved by dragging, zoomed
-//! with the wheel and reset by a double click, even while data arrive.
+//! The view is a time interval counted back from now (or from the start of the pause). Drag to move it, turn the wheel to
+//! zoom, double-click to reset, even while data arrive.
 
 use egui::{Align2, Button, Rect, RichText, Sense, TextStyle, Ui, pos2, vec2};
 use egui_plot::{
@@ -76,7 +76,7 @@ fn time_axis_height(ui: &Ui) -> f32 {
     TIME_AXIS_ROWS * ui.text_style_height(&egui::TextStyle::Body)
 }
 
-/// The forces along an axis at the end of this time, and the largest in it.
+/// The forces along an axis at the end of this interval, and their maximum in it.
 fn summary(history: &History, axis: usize, (from_s, to_s): (f64, f64)) -> String {
     let both = [axis, axis + 3].map(|channel| {
         let now_n = history.value_at(channel, to_s.min(history.latest_s()));
@@ -105,7 +105,7 @@ fn read_at(ui: &Ui, history: &History, axis: usize, (now_s, at_s): (f64, f64), r
     }
 }
 
-/// The torque about the shaft, where it is known: nothing renders it, so it is not among the traces.
+/// The torque about the shaft, if known: it is not rendered, so it is not among the traces.
 fn twist_ui(ui: &mut Ui, live: &Live, side: Side) {
     let Twist { jaws_nm, wrist_nm } = live.figures.twist[side.index()];
     if jaws_nm.is_some() || wrist_nm.is_some() {
@@ -140,7 +140,7 @@ fn header_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     });
 }
 
-/// What the row takes beside its heading in the language of the window.
+/// Width of the row without its heading, in the language of the window.
 fn needed_width(ui: &Ui, live: &Live, state: &ForcesState) -> f32 {
     let of = |words: &str, style: TextStyle| width_of(ui.painter(), words, style.resolve(ui.style()));
     let signs = [text::forces::MEASURED.get(), text::forces::RENDERED.get()];
@@ -155,7 +155,7 @@ fn needed_width(ui: &Ui, live: &Live, state: &ForcesState) -> f32 {
     signs + buttons
 }
 
-/// What is shown of the traces.
+/// Switches of the traces.
 fn switches_ui(ui: &mut Ui, live: &mut Live, state: &mut ForcesState) {
     let size = vec2(60.0, 26.0);
     let reset = ui.add(Button::new(text::forces::LAST_TEN_SECONDS.get()).min_size(size));
@@ -199,7 +199,8 @@ fn plot_ui(
     let history = state.history(live);
     let seconds = AxisHints::new_x()
         .label(if last { text::forces::TIME_AXIS.get() } else { "" })
-        // Otherwise the axis is as high as its texts were in the last frame, and one with other texts draws the title over the numbers.
+        // Otherwise the axis is as high as its texts in the last frame, and an axis with other texts would draw its title
+        // over the numbers.
         .min_thickness(time_axis_height(ui))
         .formatter(|mark, _| plain(mark.value));
     let newtons = AxisHints::new_y()

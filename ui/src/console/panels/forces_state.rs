@@ -1,4 +1,4 @@
-//! Which part of the forces is shown, and when it is held.
+//! The visible interval of the traces, and the pause.
 
 use nima_machine::rig::Side;
 
@@ -10,10 +10,9 @@ use crate::console::{
 const DEFAULT_VIEW_S: (f64, f64) = (-10.0, 0.0);
 const SHORTEST_S: f64 = 0.2;
 const LONGEST_S: f64 = 500.0;
-/// Smallest range of the force axis, N.
+/// Minimum range of the force axis, N.
 pub(super) const LEAST_RANGE_N: f64 = 0.25;
 
-/// State of the panel.
 #[derive(Debug)]
 pub struct ForcesState {
     /// Interval on display, s, relative to `now`.
@@ -22,7 +21,7 @@ pub struct ForcesState {
     pub(super) ranges_n: [(f64, f64); 3],
     pub(super) lines: [Trace; CHANNELS],
     pub(super) cursor_s: Option<f64>,
-    /// The view advances in steps of this, s, so that nothing is redrawn for less than one pixel.
+    /// Step of the view, s, so that nothing is redrawn for less than one pixel.
     pub(super) step_s: f64,
     /// The side whose forces are shown.
     pub(super) side: Side,
@@ -42,7 +41,7 @@ impl Default for ForcesState {
     }
 }
 
-/// Which part of the traces is shown.
+/// Visible part of the traces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::console) struct ForcesView {
     pub(in crate::console) view_s: (f64, f64),
@@ -50,12 +49,10 @@ pub(in crate::console) struct ForcesView {
 }
 
 impl ForcesState {
-    /// Which part of the traces is shown.
     pub(in crate::console) const fn view(&self) -> ForcesView {
         ForcesView { view_s: self.view_s, side: self.side }
     }
 
-    /// Shows this part of the traces.
     pub(in crate::console) const fn show(&mut self, ForcesView { view_s, side }: ForcesView) {
         self.view_s = view_s;
         self.side = side;
@@ -66,29 +63,25 @@ impl ForcesState {
         self.view_s = DEFAULT_VIEW_S;
     }
 
-    /// Holds the picture, or goes on.
+    /// Pauses or resumes the display.
     pub(in crate::console) fn toggle_pause(&mut self, live: &Live) {
         self.paused_at_s = if self.is_paused() { None } else { Some(self.history(live).latest_s()) };
     }
 
-    /// Selects the side whose forces are shown.
     pub fn of(side: Side) -> Self {
         Self { side, ..Self::default() }
     }
 
-    /// Shows the last `seconds`.
     pub fn show_last(&mut self, seconds: f64) {
         if seconds.is_finite() {
             self.view_s = (-seconds.clamp(SHORTEST_S, LONGEST_S), 0.0);
         }
     }
 
-    /// The side whose forces are shown.
     pub const fn side(&self) -> Side {
         self.side
     }
 
-    /// Whether the view is paused.
     pub const fn is_paused(&self) -> bool {
         self.paused_at_s.is_some()
     }

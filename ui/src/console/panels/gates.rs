@@ -1,4 +1,4 @@
-//! The panel "Why no force?": the gates between model and hand in order, and the present effect of each.
+//! The panel "Why no force?": the gates between model and hand in order, with their current effects.
 
 use egui::{Button, Color32, Label, RichText, TextStyle, Ui, vec2};
 use nima_core::safety::{EnergyMode, GATES, Gate as Which, Reason};
@@ -33,7 +33,6 @@ impl Default for GatesState {
     }
 }
 
-/// The panel.
 pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
     if live.is_bimanual() {
         ui.horizontal(|ui| {
@@ -59,7 +58,7 @@ pub fn gates_ui(ui: &mut Ui, live: &Live, state: &mut GatesState) {
     }
 }
 
-/// The summary: the first closed gate, or that nothing is wrong.
+/// The summary: the first closed gate, or that there is no problem.
 fn answer(live: &Live, side: Side) -> String {
     let is_free = live.figures.measured_n[side.index()].is_none_or(|measured_n| measured_n < CONTACT_N);
     why_no_force(live, side).unwrap_or_else(|| {
@@ -71,7 +70,7 @@ fn answer(live: &Live, side: Side) -> String {
     })
 }
 
-/// Why this hand gets no force, or less than it should; `None` if nothing is wrong.
+/// Reason why this hand gets no force, or less than it should; `None` if there is no problem.
 pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     let gates = &live.gates[side.index()];
     let hand = side.index();
@@ -107,7 +106,7 @@ pub fn why_no_force(live: &Live, side: Side) -> Option<String> {
     Some(words.to_owned())
 }
 
-/// Why nothing is engaged: the first cause that is in the way of pressing Engage.
+/// Reason why no side is engaged: the first obstacle before pressing Engage.
 fn why_idle(live: &Live, source: ForceSource) -> String {
     if live.is_shown_only() {
         return text::gates::NONE_IDLE_THEN.get().to_owned();
@@ -130,7 +129,7 @@ pub(super) struct Gate {
 }
 
 impl Gate {
-    /// Its symbol and the word for it.
+    /// Its symbol and state.
     pub(super) fn standing(&self) -> (Sign, &'static str) {
         let acting = self.share > if self.limits { 0.05 } else { 0.5 };
         match (acting, self.limits) {
@@ -141,7 +140,7 @@ impl Gate {
     }
 }
 
-/// All of them, in the order of the chain.
+/// All gates, in the order of the chain.
 pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
     let gates = &live.gates[side.index()];
     Which::ALL.map(|which| {
@@ -156,7 +155,7 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
     })
 }
 
-/// Text beside a gate: its setting, or its present effect.
+/// Text next to a gate: its setting, or its current effect.
 fn note(live: &Live, side: Side, which: Which) -> String {
     let gates = &live.gates[side.index()];
     let chain = &live.rig.gates;
@@ -178,7 +177,7 @@ fn note(live: &Live, side: Side, which: Which) -> String {
     }
 }
 
-/// Energy that the hand may still get back.
+/// Energy that the hand can still get back.
 fn stored(live: &Live, side: Side) -> String {
     if live.gate_settings().energy == EnergyMode::Off {
         return text::gates::ENERGY_OFF.get().to_owned();
@@ -186,7 +185,7 @@ fn stored(live: &Live, side: Side) -> String {
     live.tick_of(side).map_or_else(String::new, |tick| text::gates::energy_left(tick.gates.stored_j * 1e3))
 }
 
-/// How often the gate has acted since the loop was created, and why it acted last.
+/// How often the gate has acted since the loop was created, and the reason of the last time.
 pub(super) fn history(live: &Live, side: Side, gate: Which) -> String {
     let Some(counts) = live.tick_of(side).map(|tick| tick.gates.counts) else { return String::new() };
     let acted = counts.acted[gate.index()];

@@ -1,4 +1,4 @@
-//! Error of each mode at the horizon, which is the delay of the link.
+//! The Prediction error panel: error of each mode at the prediction horizon, which is the delay of the link.
 
 use egui::{Align2, Rect, Sense, Ui, vec2};
 use nima_core::impedance::{Mode, ModeSet};
@@ -19,7 +19,6 @@ const TREND_HEIGHT: f32 = 46.0;
 /// A smaller error is noise, and its ratio has no meaning, N.
 const LEAST_N: f64 = 1e-4;
 
-/// The panel.
 pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     let computed = live.first_tick().map_or(ModeSet::only(Mode::Dfr), |tick| tick.identification.modes);
     let dfr_n = live.figures.horizon_n[Mode::Dfr.index()];

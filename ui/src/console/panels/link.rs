@@ -1,10 +1,9 @@
-//! The line to the machine with the arm.
+//! The link to the machine with the arm.
 
 use egui::Ui;
 
 use crate::console::{live::Live, text, widgets::weak};
 
-/// The panel.
 pub fn link_ui(ui: &mut Ui, live: &Live) {
     if let Some(line) = &live.line {
         return line.ui(ui, live.state().permits().drives);

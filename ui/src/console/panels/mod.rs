@@ -1,5 +1,5 @@
-//! One file per panel. Each panel is a function that shows [`super::live::Live`] and puts the operator's commands into
-//! the outbox.
+//! One file per panel. Each panel is a function that shows [`super::live::Live`] and puts the operator's commands into the
+//! outbox.
 
 mod axis;
 pub mod calibrations;
@@ -40,20 +40,20 @@ use nima_machine::config::RigConfig;
 
 use super::{live::Live, outbox::Outbox};
 
-/// A panel of an extra. Dropping it ends what it does in the background.
+/// A panel of an extra. Dropping it ends its background work.
 pub trait Tile: Debug {
     /// Draws the panel. Returns a rig if the loop must be restarted with it.
     fn ui(&mut self, ui: &mut Ui, live: &Live, outbox: &mut Outbox) -> Option<RigConfig>;
 
-    /// Tells how the restart went.
+    /// Reports the outcome of the restart.
     fn restarted(&mut self, outcome: Result<(), String>);
 
-    /// Asks what runs in the background to stop.
+    /// Requests the end of its background work.
     fn stop(&self);
 
-    /// Whether it has figures.
+    /// Whether it has results.
     fn is_measured(&self) -> bool;
 }
 
-/// Draws a strip below a slider: whose rectangle, and whose value at the right end.
+/// Draws a strip below a slider with this rectangle, whose right end has this value.
 pub(crate) type StripUi = fn(&mut Ui, &Live, Rect, f64);

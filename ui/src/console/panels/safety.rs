@@ -1,5 +1,5 @@
-//! The interlock of each arm pair as a diagram of states with the present one highlighted, and the gates in the order
-//! in which a force passes them, with how often and why each acted.
+//! The interlock of each arm pair as a state diagram with the current state highlighted, and the gates in the order in which
+//! a force passes them, with the number and reason of their actions.
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use nima_core::safety::Why;
@@ -22,7 +22,6 @@ const DIAGRAM_HEIGHT: f32 = 118.0;
 const DIAGRAM_WIDTH: f32 = 440.0;
 const GATE_HEIGHT: f32 = 82.0;
 
-/// The panel.
 pub fn safety_ui(ui: &mut Ui, live: &Live) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut sides: Vec<Side> = live.sides().collect();
@@ -44,7 +43,7 @@ pub fn safety_ui(ui: &mut Ui, live: &Live) {
     });
 }
 
-/// Addition to a text for the side, if there are two arms.
+/// Suffix that names the side of a rig with two arms.
 fn of_side(live: &Live, side: Side) -> String {
     if live.is_bimanual() { text::safety::of_hand(side_word(side)) } else { String::new() }
 }

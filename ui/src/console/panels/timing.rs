@@ -1,4 +1,4 @@
-//! Whether the loop meets its deadlines, and which real-time privileges it has.
+//! Whether the loop meets its deadlines, and its real-time privileges.
 
 use egui::{Grid, RichText, Ui};
 use nima_core::statistics::Quantiles;
@@ -22,7 +22,7 @@ pub struct TimingState {
     made_at_s: Option<f64>,
 }
 
-/// The measured durations, in the order of a tick. One without a deadline of its own is compared with the period.
+/// The measured durations, in the order of a tick. A duration without its own deadline is compared with the period.
 fn timings(live: &Live) -> Vec<Timing<'_>> {
     let deadline_us = 1e6 / live.rig.rate_hz;
     vec![
@@ -50,7 +50,6 @@ fn timings(live: &Live) -> Vec<Timing<'_>> {
     ]
 }
 
-/// The panel.
 pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
     let timings = timings(live);
     table_ui(ui, &timings);
@@ -84,7 +83,7 @@ pub fn timing_ui(ui: &mut Ui, live: &Live, state: &mut TimingState) {
 }
 
 fn table_ui(ui: &mut Ui, timings: &[Timing<'_>]) {
-    // Four numbers stand beside a name, which has several lines where it is long.
+    // Four numbers are next to a name, which takes several lines if it is long.
     let room = (ui.available_width() - 4.0 * 52.0).max(60.0);
     Grid::new("timing").num_columns(5).spacing([10.0, 3.0]).min_col_width(40.0).show(ui, |ui| {
         ui.label(small("µs"));

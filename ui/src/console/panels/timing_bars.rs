@@ -51,7 +51,7 @@ impl Timing<'_> {
     }
 }
 
-/// A share in percent, with enough digits to show that it is not zero.
+/// Converts a fraction to percent, with enough digits to show that it is not zero.
 fn percent(share: f64) -> String {
     match 100.0 * share {
         x if x <= 0.0 => "0 %".to_owned(),

@@ -27,33 +27,31 @@ use crate::{
     words::{cure_of_refusal, refused_because},
 };
 
-/// After a change of state the next step is disabled for this time (s), so that a double click never triggers two
-/// steps.
+/// After a change of state the next step is disabled for this time (s), so that a double click never triggers two steps.
 const STEP_WAITS_S: f64 = 0.7;
 
 /// Width of the window from which the scene's name is shown.
 const SCENE_FROM: f32 = 1400.0;
 
-/// State of the bar.
 #[derive(Debug, Default)]
 pub struct TopBarState {
-    /// The last state, and when it was entered on the window's clock.
+    /// The last state, and the time of its start on the window's clock.
     seen: Option<(LoopState, f64)>,
-    /// Present and past alarms; their strip is below the bar.
+    /// Current and past alarms; their strip is below the bar.
     pub alarms: Alarms,
-    /// What the ready check asks for: one of the bar's buttons stands out then.
+    /// Instruction of the ready check that concerns a button of the bar, which then stands out.
     pub(in crate::console) asked: Option<Ask>,
     /// The session that is being recorded.
     pub(in crate::console) recorded: Option<Shown>,
-    /// The command of the button or the entry of the menu that was pressed.
+    /// The command of the pressed button or menu entry.
     pub(in crate::console) wanted: Option<Action>,
-    /// The next step is wanted from elsewhere, as if its button were pressed.
+    /// The next step requested from elsewhere, as if its button were pressed.
     pub(in crate::console) wants_step: Option<Action>,
-    /// Something can be taken back, and made again.
+    /// Whether undo and redo are possible.
     pub(in crate::console) can_undo: [bool; 2],
-    /// The past is on the screen: nothing but stop acts on the machine.
+    /// A recorded session is on the screen: only stop acts on the machine.
     pub(in crate::console) past: bool,
-    /// Whose trial of a study runs: then nothing but state, stop and engaging is offered.
+    /// Participant of a running study trial: then only state, stop and engaging are offered.
     pub(in crate::console) participant: Option<String>,
 }
 
@@ -92,7 +90,7 @@ pub fn top_bar_ui(
             let next = state.asked == Some(Ask::Release);
             let ready = since_s >= STEP_WAITS_S && closed.is_none();
             step_ui(ui, now, Step { ready, next, wanted: wants_step, closed }, outbox);
-            // After the step, which is at its left: in the order in which they are read.
+            // After the step, which is at its left: in reading order.
             stop_ui(ui, place, now, state.asked == Some(Ask::PressStop), outbox);
             ui.add_space(6.0);
             refusal_ui(ui, live);
@@ -138,20 +136,20 @@ fn identity_ui(ui: &mut Ui, live: &Live, settings: &mut Settings, state: &mut To
     });
 }
 
-/// How long the session has been recorded, on a button that keeps it; true when it is pressed.
+/// Duration of the recording, on the button that keeps it; returns true when pressed.
 fn recorded_ui(ui: &mut Ui, state: &TopBarState) -> bool {
     let Some(shown) = &state.recorded else { return false };
     let words = text::sessions::recorded_for(shown.seconds, shown.kept);
     let button = Button::selectable(shown.kept, words).frame_when_inactive(true);
-    // Wide enough for hours, so that what stands beside it never moves.
+    // Wide enough for hours, so that its neighbour never moves.
     let response = ui.add(button.min_size(vec2(104.0, 30.0)));
     let name = if shown.kept { text::sessions::NAME_KEPT.get() } else { text::sessions::NAME_KEEP.get() };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.kept, name));
     response.on_hover_text(text::sessions::hover(shown)).clicked()
 }
 
-/// The state of the arm that needs more attention; where the other arm is in another state, both, one below the other: an idle
-/// arm must not hide that the other hand feels a force.
+/// The state of the arm that needs more attention. If the states differ, both, one below the other: an idle arm must not hide
+/// that the other hand feels a force.
 pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
     let (what, colour, meaning) = match state {
         LoopState::Disconnected => (Sign::Ring, theme::now().text_weak, text::top_bar::DISCONNECTED_MEANING.get()),
@@ -163,7 +161,7 @@ pub(in crate::console) fn state_ui(ui: &mut Ui, live: &Live, state: LoopState) {
         LoopState::Faulted(_) => (Sign::Triangle, theme::now().alarm_high, text::top_bar::FAULT_MEANING.get()),
     };
     let lines = state_lines(live, state);
-    // Two lines, each with the name of its arm, are longer than one.
+    // Two lines with arm names are longer than one.
     let width = if lines.len() > 1 { 156.0 } else { 136.0 };
     let (rect, response) = ui.allocate_exact_size(vec2(width, 44.0), Sense::hover());
     let response = response.on_hover_text(text::top_bar::state_meaning(meaning));
@@ -227,20 +225,20 @@ fn stop_button(ui: &mut Ui, button: Button<'_>, ink: egui::Color32) -> egui::Res
     response
 }
 
-/// How it stands with the next step.
+/// State of the next step.
 #[derive(Clone, Copy)]
 struct Step {
     /// Its button can be pressed.
     ready: bool,
     /// Its button stands out.
     next: bool,
-    /// What is wanted from elsewhere.
+    /// The request from elsewhere.
     wanted: Option<Action>,
-    /// Why it cannot be pressed.
+    /// Reason why it cannot be pressed.
     closed: Option<&'static str>,
 }
 
-/// The button for the next step, beside the stop button and never below it.
+/// The button for the next step, next to the stop button and never below it.
 fn step_ui(ui: &mut Ui, state: LoopState, Step { ready, next, wanted, closed }: Step, outbox: &mut Outbox) {
     let (action, command, meaning) = match state {
         LoopState::Idle => (Action::Engage, Command::Engage, text::top_bar::ENGAGE_HOVER.get()),
@@ -273,7 +271,7 @@ fn refusal_ui(ui: &mut Ui, live: &Live) {
         _ => text::top_bar::NOT_SET.get(),
     };
     let arm = if live.is_bimanual() { side_word(side) } else { "" };
-    // Why an arm has no device is known from the list of devices.
+    // Take the reason from the list of devices.
     let missing = live.missing().next().filter(|_| why == Refusal::State(LoopState::Disconnected));
     let words = match missing {
         Some(Missing { name, cause, cure, .. }) => {

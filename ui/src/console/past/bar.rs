@@ -1,4 +1,4 @@
-//! The frame around the past: a head that says which moment is on the screen, and the time line below every view.
+//! The frame around playback: a header with the moment on the screen, and the time line below every view.
 
 use egui::{
     Align, Button, Color32, FontId, Frame, Label, Layout, Margin, Panel, Rect, Response, RichText, Sense, Stroke,
@@ -21,11 +21,11 @@ use crate::words::newtons;
 const HEAD: f32 = 54.0;
 const BAR: f32 = 118.0;
 const STRIP: f32 = 54.0;
-/// Least width of a message at the end of a row.
+/// Minimum width of a message at the end of a row.
 const MESSAGE: f32 = 60.0;
-/// Height of the states at the foot of the strip.
+/// Height of the states at the bottom of the strip.
 const STATES: f32 = 7.0;
-/// Height of the marks at its head.
+/// Height of the marks at its top.
 const MARKS: f32 = 10.0;
 const BUTTON: f32 = 30.0;
 /// A mark is under the pointer within this distance, points.
@@ -33,7 +33,7 @@ const NEAR: f32 = 5.0;
 /// Width of the frame.
 pub(crate) const FRAME: f32 = 4.0;
 
-/// The head. Returns true when the operator wants the machine on the screen again.
+/// The header. Returns true when the operator returns to the machine.
 pub(crate) fn head_ui(ui: &mut Ui, past: &Past) -> bool {
     let mut live_again = false;
     let colours = theme::now();
@@ -57,7 +57,7 @@ pub(crate) fn head_ui(ui: &mut Ui, past: &Past) -> bool {
     live_again
 }
 
-/// What of the screen is not recorded.
+/// The part of the screen that is not recorded.
 fn machine_ui(ui: &mut Ui, ink: Color32) {
     let words = RichText::new(text::past::MACHINE.get()).font(theme::strong(13.0)).color(ink);
     ui.label(words).on_hover_text(text::past::PAST_HOVER.get());
@@ -66,7 +66,7 @@ fn machine_ui(ui: &mut Ui, ink: Color32) {
     ui.painter().add(egui::Shape::convex_polygon(points.to_vec(), ink, Stroke::NONE));
 }
 
-/// When it was, what is shown of it, and the alarm of that moment.
+/// Time of the moment, the extent of its replay, and its alarm.
 fn words_ui(ui: &mut Ui, past: &Past, ink: Color32) {
     ui.vertical(|ui| {
         ui.add_space(6.0);
@@ -88,7 +88,7 @@ fn words_ui(ui: &mut Ui, past: &Past, ink: Color32) {
     });
 }
 
-/// How much of the moment is shown.
+/// Text about the extent of the replay.
 fn extent(past: &Past) -> &'static str {
     if past.is_whole() {
         text::past::WHOLE.get()
@@ -161,7 +161,7 @@ fn buttons_ui(ui: &mut Ui, past: &mut Past) {
     let reading = (share < 0.999 && past.told.refused.is_none()).then(|| text::past::read(share));
     let words = past.told.job.clone().or_else(|| past.told.limited.clone()).or(reading);
     if let Some(words) = words {
-        // The time line shows how far the reading is where the row has no room for it.
+        // The time line shows the reading progress if the row has no room for it.
         if ui.available_width() < MESSAGE {
             return;
         }
@@ -207,7 +207,7 @@ fn strip_ui(ui: &mut Ui, past: &mut Past) {
     point(past, response, strip, end_s);
 }
 
-/// Shows the moment under a pressed pointer; tells what is under a hovering one.
+/// Shows the moment under a pressed pointer, and the text of a mark under a hovering one.
 fn point(past: &mut Past, response: Response, strip: Rect, end_s: f64) {
     let Some(pointer) = response.interact_pointer_pos().or(response.hover_pos()) else { return };
     let t_s = f64::from((pointer.x - strip.left()) / strip.width()) * end_s;
@@ -241,12 +241,12 @@ fn mark(painter: &egui::Painter, strip: Rect, x: f32, kind: LineKind) {
         LineKind::Mark | LineKind::Happening => theme::now().text,
         LineKind::Told => theme::now().text_weak,
     };
-    // The operator's own marks go through, as in the traces.
+    // The operator's own marks span the strip, as in the traces.
     let foot = if kind == LineKind::Mark { strip.bottom() } else { strip.top() + MARKS };
     painter.vline(x, strip.top()..=foot, Stroke::new(2.0, colour));
 }
 
-/// The largest forces and the states, a column for each point of the strip.
+/// The maximum forces and the states, one column per point of the strip.
 fn forces(painter: &egui::Painter, strip: Rect, overview: &Overview, end_s: f64) {
     let largest = |most: f32, one: &Bucket| most.max(one.measured_n.unwrap_or_default()).max(one.rendered_n);
     let largest_n = overview.buckets.iter().fold(0.5, largest);

@@ -10,7 +10,7 @@ use crate::console::{
     widgets::weak,
 };
 
-/// Share of the height that the traces take.
+/// Fraction of the height for the traces.
 const TRACES: f32 = 0.46;
 
 /// Draws both, each in its half.

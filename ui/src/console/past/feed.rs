@@ -1,4 +1,4 @@
-//! The ticks of a session from some time on: replayed, or as far as they are plotted in its file.
+//! The ticks of a session from a start time: replayed, or from the recorded plots in its file.
 
 use std::{collections::BTreeMap, mem::discriminant};
 
@@ -15,43 +15,44 @@ use nima_session::{
 use super::film::File;
 use crate::console::{chain, text};
 
-/// What is plotted is read in stretches of this length, s: about a chunk of the file.
+/// Recorded plots are read in segments of this length, s: about a chunk of the file.
 const STRETCH_S: f64 = 0.4;
 
 /// One tick of a session.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     pub(super) t_s: f64,
-    /// Calibrations that came into force: the side, and their number.
+    /// Newly activated calibrations: the side, and their number.
     pub(super) in_force: Vec<(Side, u64)>,
     pub(super) events: Vec<Event>,
     pub(super) ticks: [Option<Tick>; SIDES],
-    /// The objects of the scene then, in the last one that is asked for.
+    /// The objects of the scene at that time, only in the last requested frame.
     pub(super) objects: Option<Objects>,
 }
 
-/// Where ticks come from.
+/// Source of ticks.
 #[expect(clippy::large_enum_variant, reason = "two at most")]
 pub(super) enum Feed {
-    /// The loop that was recorded.
+    /// A replay of the recorded loop.
     Replay(Cursor<Messages>),
-    /// The plots of the file, from this time on, s.
+    /// The recorded plots of the file, from this time on, s.
     Plots(f64),
 }
 
-/// Where a feed has come to.
+/// Progress of a feed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Reached {
-    /// To the limit, or beyond it by less than a tick.
+    /// The limit, exceeded by less than a tick.
     Limit,
-    /// Not yet: there is more.
+    /// More ticks follow before the limit.
     More,
-    /// The end; why, if it is not the end of the session.
+    /// The end, with the reason if it is not the end of the session.
     End(Option<String>),
 }
 
 impl Feed {
-    /// Moves on by a block, or to the first tick at `limit_s` or after it. `like` are ticks from which what is not plotted is taken.
+    /// Advances by a block, or to the first tick at or after `limit_s`. `like`: ticks that supply values missing in the
+    /// recorded plots.
     pub(super) fn slice(
         &mut self,
         file: &File,
@@ -83,7 +84,7 @@ impl Feed {
         }
     }
 
-    /// The loop as it is now, if it is replayed and a block of the journal has just been passed.
+    /// The current loop, if it is replayed and a block of the journal has just ended.
     pub(super) fn keyframe(&self) -> Option<Keyframe> {
         match self {
             Self::Replay(cursor) => cursor.keyframe(),
@@ -116,7 +117,7 @@ fn replay(cursor: &mut Cursor<Messages>, limit_s: f64, each: &mut impl FnMut(Fra
     }
 }
 
-/// What is plotted from `from_s` up to `to_s`, as ticks.
+/// The recorded plots from `from_s` up to `to_s`, as ticks.
 pub(super) fn plots(
     file: &File,
     like: &[Option<Tick>; SIDES],
@@ -142,10 +143,10 @@ pub(super) fn plots(
     Ok(frames.into_values().collect())
 }
 
-/// A tick like this one, with all that is plotted.
+/// A tick like this one, with all recorded plot values.
 fn tick(like: &Tick, side: Side, plotted: &PlottedTick) -> Tick {
     let PlottedTick { time_ns: _, t_s, tip_m, leader_m, measured_n, delayed_n, asked_n, rendered_n, state } = plotted;
-    // Which fault it was is not plotted: that of the tick before.
+    // The plots do not contain the kind of fault: use that of the previous tick.
     let state = if discriminant(state) == discriminant(&like.state) { like.state } else { *state };
     let mut tick = Tick {
         side,

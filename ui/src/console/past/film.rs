@@ -1,8 +1,9 @@
-//! A recorded session while it is shown: read once from its beginning to its end, and again from near any moment.
+//! Reader of a recorded session during playback: it reads the session once from start to end, and again around any moment.
 //!
-//! The first reading leaves loops to go on from (keyframes), samples, the extremes of the traces and what happened. A moment is shown at
-//! once from these and from what is plotted of it in the file; then the loop is replayed up to it from some seconds before, so that
-//! every panel shows what it showed then. What cannot be replayed is shown as far as it is plotted.
+//! The first reading stores loops to continue from (keyframes), samples, the extremes of the traces, and events. A moment is
+//! shown at once from these and from the recorded plots in the file; then the loop is replayed to that moment from some
+//! seconds before, so that every panel shows its original content. Parts that cannot be replayed are shown from the recorded
+//! plots.
 
 use std::path::{Path, PathBuf};
 
@@ -34,44 +35,43 @@ use crate::console::{
 };
 use crate::recording::WORDS;
 
-/// A moment is replayed from this time before it, s, so that traces and figures have their past.
+/// A moment is replayed from this time before it, s, so that traces and figures have their history.
 const LEAD_S: f64 = 10.0;
 /// Traces reach back to this time before it, s.
 const TRACES_S: f64 = 120.0;
-/// Least time between keyframes, s; doubled whenever there are too many.
+/// Minimum time between keyframes, s; doubled whenever there are too many.
 const KEYFRAME_S: f64 = 1.5;
-/// Most keyframes that are kept: each is a whole loop, 17 MB with one arm and 27 MB with two.
+/// Maximum number of stored keyframes: each is a whole loop, 17 MB with one arm and 27 MB with two.
 const KEYFRAMES: usize = 40;
 /// Time between samples, s.
 const SAMPLE_S: f64 = 0.1;
 /// Length of a column of the traces, s.
 const COLUMN_S: f64 = 0.016;
-/// The log is read in stretches of this length, s, because each is a look into all chunks of its time.
+/// The log is read in segments of this length, s, because each reading searches all chunks of its time.
 const LOG_S: f64 = 4.0;
-/// A moment without a tick is that of the next one within this time, s.
+/// A moment without a tick uses the next tick within this time, s.
 const NEXT_S: f64 = 0.05;
 
-/// The file of a session.
 pub(super) struct File {
     pub(super) path: PathBuf,
     pub(super) recorded: Recorded,
     pub(super) begin_ns: u64,
     /// Time of its last message, s.
     pub(super) end_s: f64,
-    /// The arms that are plotted.
+    /// The arms with recorded plots.
     pub(super) arms: Vec<Side>,
     pub(super) rig: RigConfig,
     pub(super) scene: Scene,
-    /// How its journal begins, or why it cannot be replayed.
+    /// The start of its journal, or the reason why it cannot be replayed.
     start: Result<Start, String>,
-    /// Rings or jaws are in it.
+    /// Contains rings or jaws.
     has_objects: bool,
-    /// Pictures of the endoscope are in it.
+    /// Contains endoscope images.
     pub(super) has_pictures: bool,
 }
 
 impl File {
-    /// Opens it; one line if it cannot be shown at all.
+    /// Returns one line as error if the session cannot be shown at all.
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         let recorded = Recorded::open(path).map_err(|error| chain(&error))?;
         let begin_ns = plotted::beginning_ns(recorded.reader()).map_err(|error| chain(&error))?;
@@ -97,20 +97,20 @@ impl File {
         self.begin_ns + (t_s.max(0.0) * 1e9).round() as u64
     }
 
-    /// The objects of the scene at this time, s; none where they are not recorded or cannot be read.
+    /// The objects of the scene at this time, s; none if they are not recorded or cannot be read.
     fn objects(&self, t_s: f64) -> Option<Objects> {
         let at = || objects::at(self.recorded.reader(), self.begin_ns, self.time_ns(t_s)).ok().flatten();
         self.has_objects.then(at)?
     }
 
-    /// The tables of the calibrations that came into force.
+    /// The tables of the activated calibrations.
     pub(super) fn calibrations(&self) -> Tables {
         let tables = self.recorded.reader().metadata().unwrap_or_default();
         let of = |name: &str| name.strip_prefix("calibrations ").map(str::to_owned);
         tables.into_iter().filter_map(|(name, table)| Some((of(&name)?, table))).collect()
     }
 
-    /// A tick of each arm in which nothing is known.
+    /// A tick of each arm with unknown values only.
     fn blank(&self) -> Result<[Option<Tick>; SIDES], String> {
         let known = Side::ALL.map(|side| self.arms.contains(&side).then(Calibrations::default));
         let mut control = Loop::new(&self.rig, &known).map_err(|error| chain(&error))?;
@@ -118,7 +118,7 @@ impl File {
     }
 }
 
-/// A table of a session's settings that is kept in its file.
+/// A settings table of a session from its file.
 fn attached<T: serde::de::DeserializeOwned>(recorded: &Recorded, name: &str) -> Result<T, String> {
     let reader = recorded.reader();
     let place = reader.attachments().iter().find(|one| one.name == name).ok_or_else(|| text::past::without(name))?;
@@ -135,7 +135,7 @@ struct Column {
     high: [f32; CHANNELS],
 }
 
-/// What the first reading has left so far.
+/// Results of the first reading so far.
 pub(super) struct Film<'a> {
     pub(super) file: &'a File,
     blank: [Option<Tick>; SIDES],
@@ -145,19 +145,19 @@ pub(super) struct Film<'a> {
     samples: [Vec<Tick>; SIDES],
     columns: [Vec<Column>; SIDES],
     events: Vec<(f64, Event)>,
-    /// Marks of the operator, s.
+    /// Operator marks, s.
     marks_s: Vec<f64>,
     /// The log was read up to this time, s.
     log_s: f64,
     /// Everything before this time was read, s.
     read_s: f64,
-    /// Everything before this time was replayed as it was recorded, s.
+    /// The replay matches the recording up to this time, s.
     exact_s: f64,
-    /// Why what comes after that is only plotted.
+    /// Reason why the rest comes only from the recorded plots.
     pub(super) why: Option<String>,
 }
 
-/// A moment that is being replayed.
+/// A replay towards a moment.
 pub(super) struct Chase {
     feed: Feed,
     live: Live,
@@ -167,7 +167,6 @@ pub(super) struct Chase {
 }
 
 impl<'a> Film<'a> {
-    /// Nothing is read yet.
     pub(super) fn new(file: &'a File) -> Result<Self, String> {
         let mut film = Self {
             file,
@@ -198,7 +197,7 @@ impl<'a> Film<'a> {
         Ok(film)
     }
 
-    /// Time up to which it was read, s.
+    /// Time up to which the session was read, s.
     pub(super) const fn read_s(&self) -> f64 {
         self.read_s
     }
@@ -208,7 +207,7 @@ impl<'a> Film<'a> {
         t_s <= self.exact_s
     }
 
-    /// Reads on for a moment; false at the end. Everything that was read is told to `each`.
+    /// Reads for a short time; false at the end. `each` receives everything that was read.
     pub(super) fn read(&mut self, mut each: impl FnMut(&Frame)) -> bool {
         let Some(mut reading) = self.reading.take() else { return false };
         let mut frames = Vec::new();
@@ -238,7 +237,7 @@ impl<'a> Film<'a> {
         self.reading.is_some()
     }
 
-    /// What the log tells of what was read, as soon as it is worth a look.
+    /// Log entries of the segments read so far, once there are enough of them.
     pub(super) fn notes(&mut self) -> Vec<Note> {
         if self.reading.is_some() && self.read_s < self.log_s + LOG_S {
             return Vec::new();
@@ -246,7 +245,7 @@ impl<'a> Film<'a> {
         let to_ns = if self.reading.is_some() { self.file.time_ns(self.read_s) } else { u64::MAX };
         let times_ns = self.file.time_ns(self.log_s)..to_ns;
         self.log_s = self.read_s;
-        // A log that cannot be read has nothing to tell; the damage is told by what is replayed or plotted.
+        // An unreadable log has no entries; the replay or the plots report the damage.
         let lines = self.file.recorded.log(times_ns).unwrap_or_default();
         let devices = self.file.rig.device_names();
         let note = |Line { time_ns, kind, words, value }| {
@@ -288,7 +287,7 @@ impl<'a> Film<'a> {
         }
     }
 
-    /// The last samples before this time, s, for what is not plotted.
+    /// The last samples before this time, s, for values missing in the recorded plots.
     fn like(&self, t_s: f64) -> [Option<Tick>; SIDES] {
         Side::ALL.map(|side| {
             let samples = &self.samples[side.index()];
@@ -297,11 +296,11 @@ impl<'a> Film<'a> {
         })
     }
 
-    /// The state of the window before this time, s: traces and events.
+    /// State of the window before this time, s: traces and events.
     fn live(&self, t_s: f64) -> Live {
         let mut live = Live::of_past(self.file.rig.clone(), self.file.scene.clone());
         live.replay(self.events.iter().take_while(|(at_s, _)| *at_s < t_s).map(|(_, event)| event), &[None; SIDES]);
-        // Those to come lie beyond the end of the traces.
+        // Later marks are beyond the end of the traces.
         live.marks_s.extend(&self.marks_s);
         for (columns, history) in self.columns.iter().zip(&mut live.history) {
             let from = columns.partition_point(|column| begin_s(column) < t_s - TRACES_S);
@@ -313,10 +312,10 @@ impl<'a> Film<'a> {
         live
     }
 
-    /// The moment at this time, s, at once: as far as it is plotted, the rest from the last sample.
+    /// The moment at this time, s, at once: recorded plot values, the rest from the last sample.
     pub(super) fn at_once(&self, t_s: f64) -> Live {
         let like = self.like(t_s);
-        // What cannot be read there is told when it is read in its turn.
+        // Damage there is reported when the first reading reaches it.
         let frames = plots(self.file, &like, t_s, t_s + NEXT_S).unwrap_or_default();
         let frame = frames.into_iter().next();
         let mut live = self.live(t_s);
@@ -326,7 +325,7 @@ impl<'a> Film<'a> {
         live
     }
 
-    /// Begins to replay up to the first tick at this time, s, or after it.
+    /// Starts a replay to the first tick at or after this time, s.
     pub(super) fn chase(&self, to_s: f64) -> Chase {
         let from_s = (to_s - LEAD_S).max(0.0);
         let keyframe = self.keyframes.iter().rfind(|keyframe| keyframe.t_s() <= from_s);
@@ -341,7 +340,7 @@ impl<'a> Film<'a> {
 }
 
 impl Chase {
-    /// Goes on for a moment; true when the moment is reached.
+    /// Continues for a short time; true when the moment is reached.
     pub(super) fn go_on(&mut self, file: &File) -> bool {
         let Self { feed, live, like, from_s, to_s } = self;
         let reached = feed.slice(file, like, *to_s, |frame| {
@@ -352,7 +351,7 @@ impl Chase {
         reached != Reached::More
     }
 
-    /// What is shown, and where it goes on.
+    /// The state to show, and the view to continue from.
     pub(super) fn end(mut self, file: &File) -> (Live, View) {
         if self.live.ticks.iter().all(Option::is_none) {
             // Nothing could be read here.
@@ -366,14 +365,14 @@ impl Chase {
     }
 }
 
-/// The moment that is shown, from which it goes on.
+/// The displayed moment, and the feed that continues from it.
 pub(super) struct View {
     feed: Feed,
     like: [Option<Tick>; SIDES],
 }
 
 impl View {
-    /// Whether everything is as it was, not only what is plotted.
+    /// Whether every value is replayed, not only those in the recorded plots.
     pub(super) const fn is_exact(&self) -> bool {
         matches!(self.feed, Feed::Replay(_))
     }

@@ -1,4 +1,4 @@
-//! Work on a session that takes a while, in a thread of its own: a report, a stretch of it.
+//! Longer work on a session, in a separate thread: a report, an excerpt.
 
 use std::{
     ops::Range,
@@ -18,17 +18,17 @@ use nima_session::{cut, plotted, shelf::keep};
 use crate::console::{chain, opener, text};
 use crate::language::{self, Language};
 
-/// Folder of the reports, beside the sessions.
+/// Folder of the reports, next to the sessions.
 const REPORTS: &str = "reports";
 
-/// What is being done, and where its words come.
+/// Running work, and the receiver of its messages.
 #[derive(Debug)]
 pub(super) struct Job {
     doing: &'static str,
     told: Receiver<String>,
-    /// Set when nobody waits for it any more.
+    /// Set when the result is no longer needed.
     left: Arc<AtomicBool>,
-    /// What deletes its half-written file then, which takes a moment: the program must not end before.
+    /// Deletes the half-written file then, which takes a moment: the program must not end before.
     tidies: Option<JoinHandle<()>>,
 }
 
@@ -42,7 +42,7 @@ impl Drop for Job {
 }
 
 impl Job {
-    /// What is being done, or what came of it; true when it is over.
+    /// The work or its result; true when it is over.
     pub(super) fn told(&self) -> (String, bool) {
         match self.told.try_recv() {
             Ok(words) => (words, true),
@@ -60,7 +60,7 @@ impl Job {
             tell.send(work(&seen)).ok();
             ctx.request_repaint();
         };
-        // If no thread can be created, `tell` is dropped, and that is told.
+        // If no thread can be created, `tell` is dropped, which is reported.
         let tidies = thread::Builder::new().name("session".to_owned()).spawn(language::carried(work)).ok();
         Self { doing, told, left, tidies }
     }
@@ -70,22 +70,22 @@ impl Job {
         let session = session.to_path_buf();
         let mut job = Self::start(ctx, text::past::REPORTING.get(), move |_| {
             let folder = beside(&session).join(REPORTS).join(session.file_stem().unwrap_or_default());
-            // What is written is English.
+            // Files are in English.
             match language::with(Language::English, || crate::report::write(&[session], &folder)) {
                 Ok(page) => {
-                    // Where there is none, the words on the screen say where the file is.
+                    // Otherwise the text on the screen gives the path of the file.
                     opener::open(&page);
                     text::past::reported(&page)
                 }
                 Err(error) => text::past::not_reported(&format!("{error:#}")),
             }
         });
-        // Its page appears whole or not at all, and its program may run for long.
+        // The page appears completely or not at all, and its program may run for a long time.
         job.tidies = None;
         job
     }
 
-    /// Saves the stretch between these times (s) beside the session, and keeps it.
+    /// Saves the excerpt between these times (s) next to the session, and keeps it.
     pub(super) fn cut(ctx: &Context, session: &Path, times_s: Range<f64>) -> Self {
         let session = session.to_path_buf();
         Self::start(ctx, text::past::CUTTING.get(), move |left| match save(&session, &times_s, left) {

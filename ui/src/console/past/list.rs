@@ -23,16 +23,15 @@ use crate::language;
 
 const BUTTON: egui::Vec2 = vec2(74.0, 28.0);
 
-/// State of the page.
 #[derive(Debug, Default)]
 pub(crate) struct List {
     pub(crate) is_open: bool,
-    /// A session is chosen to be shown beside the one on the screen.
+    /// A session is to be chosen for the comparison.
     pub(crate) for_beside: bool,
     folder: Option<PathBuf>,
     rows: Vec<Row>,
     reading: Option<Receiver<Result<Vec<Row>, String>>>,
-    /// The one that may be deleted by the next press.
+    /// The session that the next press deletes.
     asked: Option<PathBuf>,
     job: Option<Job>,
     told: Option<String>,
@@ -45,7 +44,6 @@ struct Row {
     about: Result<About, String>,
 }
 
-/// What is to be done with a session.
 enum Wish {
     Open(PathBuf),
     Keep(PathBuf, bool),
@@ -73,7 +71,7 @@ impl List {
             give.send(read(&folder)).ok();
             ctx.request_repaint();
         };
-        // If no thread can be created, nothing comes, and the list stays as it was.
+        // If no thread can be created, the list stays unchanged.
         thread::Builder::new().name("sessions".to_owned()).spawn(language::carried(work)).ok();
         self.reading = Some(rows);
     }
@@ -94,7 +92,7 @@ impl List {
         }
     }
 
-    /// Draws the page; returns the session that is to be opened.
+    /// Draws the page; returns the session to open.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<PathBuf> {
         self.take_in();
         let mut wish = Picking::take(&mut self.picking).map(Wish::Open);
@@ -121,7 +119,7 @@ impl List {
                 let folder = self.folder.as_ref().map(|folder| folder.display().to_string());
                 ui.add(Label::new(small(folder.unwrap_or_else(|| text::past::NO_SHELF.get().to_owned()))).truncate());
             });
-            // A line of its own, so that what is below never moves.
+            // A separate line, so that the content below never moves.
             ui.label(weak(self.told.clone().unwrap_or_default()));
             ui.add_space(4.0);
             if self.rows.is_empty() && self.folder.is_some() {
@@ -162,7 +160,7 @@ impl List {
     }
 }
 
-/// The sessions of this folder, the newest first.
+/// The sessions of this folder, newest first.
 fn read(folder: &Path) -> Result<Vec<Row>, String> {
     let shelf = Shelf::new(folder, MOST_BYTES);
     let sessions = shelf.sessions().map_err(|error| text::sessions::no_folder(folder, &error))?;
@@ -203,7 +201,7 @@ fn row_ui(ui: &mut Ui, row: &Row, is_asked: bool, free: bool) -> Option<Wish> {
     wish
 }
 
-/// When it was recorded, how long it is, on which rig.
+/// Date, duration and rig.
 fn about_ui(ui: &mut Ui, Row { shelved, about }: &Row) {
     let Shelved { path, bytes, writing, .. } = shelved;
     let strong = |words: String| RichText::new(words).font(theme::strong(14.0));

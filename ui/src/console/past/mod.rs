@@ -1,7 +1,7 @@
-//! The past on the screen: a recorded session at any moment, in the same views as the machine.
+//! Playback: a recorded session at any moment, in the same views as the machine.
 //!
-//! The views get a state of their own ([`Live`]) that is fed from the session, and an outbox that is never sent: nothing on the screen acts
-//! on the machine until the operator returns to it.
+//! The views get a separate state ([`Live`]) from the session, and an outbox that is never sent: no control on the screen
+//! acts on the machine until the operator returns to it.
 
 mod bar;
 mod beside;
@@ -30,46 +30,44 @@ use crate::words::side_word;
 pub(crate) use bar::{FRAME, bar_ui, head_ui};
 pub(crate) use beside::both_ui;
 
-/// How fast a session can be played.
+/// Playback speeds.
 const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
-/// The screen is at most this much ahead of the ticks that it waits for, or a frame, s.
+/// The screen is at most this much ahead of the ticks that it waits for, or one frame, s.
 const AHEAD_S: f64 = 0.3;
-/// Of a longer time between two frames only this much is played, s: nobody saw the rest.
+/// Maximum playback time per frame, s: longer pauses between frames are not played.
 const PAUSE_S: f64 = 1.0;
-/// Figures are brought up to date after so many seconds of the session.
+/// Figures are updated at this interval of session time, s.
 const SETTLED_S: f64 = 0.02;
 
-/// A session that is open.
 #[derive(Debug)]
 pub(crate) struct Past {
     pub(super) path: PathBuf,
     worker: Worker,
     about: Option<About>,
-    /// What the views show; `None` until the first moment is there.
+    /// State for the views; `None` until the first moment is loaded.
     pub(super) live: Option<Box<Live>>,
     pub(super) panels: Panels,
     pub(super) in_force: InForce,
-    /// Takes what the views would tell the machine; it is never sent.
+    /// Receives the commands of the views; they are never sent.
     pub(super) outbox: Outbox,
     overview: Overview,
     calibrations: Tables,
-    /// Names of the devices.
     devices: Vec<DeviceName>,
     extent: Extent,
-    /// Time that is wanted on the screen, s.
+    /// Requested time on the screen, s.
     wanted_s: f64,
     play: Play,
     stretch_s: [Option<f64>; 2],
-    /// Another session on the same clock: the times since both began are the same.
+    /// Another session on the same clock: equal times since the start of each.
     pub(super) beside: Option<Box<Self>>,
-    /// Another session is wanted beside this one.
+    /// The operator wants to choose a session for comparison.
     pub(super) wants_beside: bool,
     job: Option<Job>,
     told: Told,
     ctx: Context,
 }
 
-/// What is known when a session is open.
+/// Facts of an open session.
 #[derive(Clone, Copy, Debug)]
 struct About {
     begin_ns: u64,
@@ -80,23 +78,23 @@ struct About {
 struct Play {
     runs: bool,
     speed: f64,
-    /// Time that has passed since the figures were brought up to date, s.
+    /// Session time since the last update of the figures, s.
     unsettled_s: f64,
 }
 
-/// Lines for the operator.
+/// Messages for the operator.
 #[derive(Debug, Default)]
 struct Told {
-    /// Why the session cannot be shown.
+    /// Reason why the session cannot be shown.
     refused: Option<String>,
-    /// Why a part of it is only plotted.
+    /// Reason why a part comes only from the recorded plots.
     limited: Option<String>,
-    /// What came of the last report or stretch.
+    /// Result of the last report or excerpt.
     job: Option<String>,
 }
 
 impl Past {
-    /// Opens a session at its beginning; `scene` draws the operating field.
+    /// Opens a session at its start; `scene` draws the operating field.
     pub(crate) fn open(path: &Path, ctx: &Context, scene: SceneView) -> Self {
         let wakes = ctx.clone();
         let worker = Worker::start(path, move || wakes.request_repaint());
@@ -124,7 +122,7 @@ impl Past {
         }
     }
 
-    /// Takes in what is there of the session, and plays it on by `dt_s`; `driven` tells whether a machine is driven meanwhile.
+    /// Receives answers about the session, and plays it by `dt_s`; `driven`: a machine is being driven meanwhile.
     pub(crate) fn step(&mut self, dt_s: f64, driven: bool) {
         self.worker.go_gently(driven);
         while let Some(answer) = self.worker.answer() {
@@ -148,7 +146,7 @@ impl Past {
         }
     }
 
-    /// Takes in what is there of a session beside another one, and goes on up to this time, s.
+    /// Receives answers about a compared session, and continues up to this time, s.
     fn follow(&mut self, to_s: Option<f64>, driven: bool) {
         self.worker.go_gently(driven);
         while let Some(answer) = self.worker.answer() {
@@ -161,13 +159,12 @@ impl Past {
         }
     }
 
-    /// Shows another session beside this one.
     pub(crate) fn set_beside(&mut self, mut beside: Self) {
         beside.show(self.shown_s());
         self.beside = Some(Box::new(beside));
     }
 
-    /// What was in force and which devices were there at the moment on the screen.
+    /// Updates calibrations and devices for the moment on the screen.
     fn settle(&mut self) {
         let t_s = self.shown_s();
         let line = |side: Side| {
@@ -200,7 +197,7 @@ impl Past {
             Answer::Refused(why) => self.told.refused = Some(text::past::refused(&why)),
             Answer::Read(part) => self.overview.add(part),
             Answer::Limited(why) => self.told.limited = Some(text::past::limited(&why)),
-            // A moment that is no longer wanted comes too late.
+            // A moment that is no longer requested arrives too late.
             Answer::Shown(live, extent, t_s) if (t_s - self.wanted_s).abs() < 1e-9 => {
                 self.extent = extent;
                 self.live = Some(live);
@@ -222,12 +219,12 @@ impl Past {
         }
     }
 
-    /// Shows this time, s, and no longer plays.
+    /// Shows this time, s, and pauses.
     pub(crate) fn show(&mut self, t_s: f64) {
         let end_s = self.about.map_or(f64::INFINITY, |about| about.end_s);
         self.play.runs = false;
         self.wanted_s = t_s.clamp(0.0, end_s);
-        // What is on the screen until then is another moment.
+        // Until then the screen shows another moment.
         self.extent = Extent::Plotted;
         self.worker.show(self.wanted_s);
         if let Some(beside) = &mut self.beside {
@@ -235,7 +232,7 @@ impl Past {
         }
     }
 
-    /// Plays, or holds.
+    /// Plays or pauses.
     pub(crate) fn toggle(&mut self) {
         self.play.runs = !self.play.runs && self.live.is_some();
         self.wanted_s = self.shown_s();
@@ -246,34 +243,32 @@ impl Past {
         self.live.as_ref().map_or(self.wanted_s, |live| shown_s(live))
     }
 
-    /// Whether something is about to change on the screen.
+    /// Whether the screen is about to change.
     pub(crate) const fn moves(&self) -> bool {
         self.play.runs || self.job.is_some()
     }
 
-    /// Whether every figure on the screen is as it was at that moment.
+    /// Whether every value on the screen is replayed.
     pub(crate) fn is_whole(&self) -> bool {
         self.extent == Extent::Whole
     }
 
-    /// Which share of the session was read, 0 to 1.
+    /// Fraction of the session that was read, 0 to 1.
     fn read_share(&self) -> f64 {
         self.about.map_or(0.0, |about| if about.end_s > 0.0 { self.overview.read_s / about.end_s } else { 1.0 })
     }
 
-    /// Why the session cannot be shown.
     pub(super) fn refused(&self) -> Option<&str> {
         self.told.refused.as_deref()
     }
 
-    /// Writes the report of this session.
     fn report(&mut self, ctx: &Context) {
         if self.job.is_none() {
             self.job = Some(Job::report(ctx, &self.path));
         }
     }
 
-    /// The stretch that can be saved, s.
+    /// The selected excerpt, s.
     fn stretch_s(&self) -> Option<std::ops::Range<f64>> {
         let [Some(from_s), Some(to_s)] = self.stretch_s else { return None };
         (from_s < to_s).then_some(from_s..to_s)

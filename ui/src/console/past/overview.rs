@@ -1,4 +1,4 @@
-//! A whole session in little: its largest forces, its states, and what happened, along its time.
+//! Overview of a session along its time: maximum forces, states, and events.
 
 use std::collections::BTreeMap;
 
@@ -14,16 +14,16 @@ use super::feed::Frame;
 /// Length of a bucket, s.
 pub(super) const BUCKET_S: f64 = 0.5;
 
-/// The largest forces and the state that needs most attention in a short time.
+/// Maximum forces, and the state that needs most attention, in a short time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bucket {
-    /// `None` where it was never known.
+    /// `None` if it was never known.
     pub(super) measured_n: Option<f32>,
     pub(super) rendered_n: f32,
     pub(super) state: Option<LoopState>,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Note {
     pub(super) t_s: f64,
@@ -31,25 +31,25 @@ pub(super) struct Note {
     pub(super) words: String,
 }
 
-/// Tables of calibrations in a session: those of the beginning by their side, later ones by their number.
+/// Calibration tables of a session: by side for those at the start, by number for later ones.
 pub(super) type Tables = BTreeMap<String, BTreeMap<String, String>>;
 
-/// What has been read of a session.
+/// Results of reading a session.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Overview {
-    /// By their numbers; a part has only its own.
+    /// Number of the first bucket; a part has only its own.
     first: usize,
     pub(super) buckets: Vec<Bucket>,
     pub(super) notes: Vec<Note>,
-    /// Devices that came or went: when (s), which, and how it is since.
+    /// Changes of devices: time (s), device, new state.
     pub(super) devices: Vec<(f64, usize, Standing)>,
-    /// Calibrations that came into force: when (s), on which side, their number.
+    /// Activated calibrations: time (s), side, number.
     pub(super) in_force: Vec<(f64, Side, u64)>,
     pub(super) read_s: f64,
 }
 
 impl Overview {
-    /// Takes in a tick; rising in time.
+    /// Adds a tick; times must rise.
     pub(super) fn take(&mut self, frame: &Frame) {
         let number = (frame.t_s / BUCKET_S) as usize;
         if self.buckets.is_empty() {
@@ -73,19 +73,19 @@ impl Overview {
         self.read_s = frame.t_s;
     }
 
-    /// How this device was at this time (s); closed before anything was told of it.
+    /// State of this device at this time (s); closed before its first report.
     pub(super) fn standing(&self, device: usize, t_s: f64) -> Standing {
         let of_device = |(at_s, which, _): &&(f64, usize, Standing)| *which == device && *at_s <= t_s;
         self.devices.iter().rfind(of_device).map_or(Standing::Closed, |(_, _, standing)| *standing)
     }
 
-    /// The calibrations that were in force on this side at this time (s): since when, and their number; `None`: those of the beginning.
+    /// Active calibrations of this side at this time (s): start and number; `None`: those of the start.
     pub(super) fn calibrations(&self, side: Side, t_s: f64) -> Option<(f64, u64)> {
         let of_side = |(at_s, of, _): &&(f64, Side, u64)| *of == side && *at_s <= t_s;
         self.in_force.iter().rfind(of_side).map(|(at_s, _, number)| (*at_s, *number))
     }
 
-    /// Takes in the next part.
+    /// Adds the next part.
     pub(super) fn add(&mut self, part: Self) {
         let Self { first, buckets, notes, devices, in_force, read_s } = part;
         self.buckets.resize(self.buckets.len().max(first + buckets.len()), Bucket::default());
@@ -100,7 +100,7 @@ impl Overview {
 }
 
 impl Bucket {
-    /// `f32::max` leaves out what is not a number.
+    /// `f32::max` ignores NaN.
     pub(super) fn merge(&mut self, other: &Self) {
         self.measured_n = self.measured_n.into_iter().chain(other.measured_n).reduce(f32::max);
         self.rendered_n = self.rendered_n.max(other.rendered_n);

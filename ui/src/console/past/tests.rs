@@ -36,7 +36,7 @@ use crate::{
 
 const TIMEOUT: Duration = Duration::from_mins(3);
 
-/// A session of this scene, with a command after so many ticks of the right arm.
+/// A session of this scene, with a command after this many ticks of the right arm.
 fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Option<Command>) {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load(scene).unwrap();
@@ -48,8 +48,8 @@ fn record(path: &Path, scene: &str, seconds: f64, command: impl Fn(u64) -> Optio
     recorder.finish().unwrap();
 }
 
-/// A session of a scene with a training task, and what the screen was told of it. Before each tick of the right arm, by its number, a
-/// command may be given.
+/// A session of a scene with a training task, and the objects that the screen received. Before each tick of the right arm, by
+/// its number, a command may be given.
 fn record_task(scene: &str, path: &Path, seconds: f64, command: impl Fn(u64) -> Option<Command>) -> Vec<Objects> {
     let mut rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load(scene).unwrap();
@@ -90,7 +90,7 @@ fn until(past: &mut Past, what: &str, good: impl Fn(&Past) -> bool) {
     }
 }
 
-/// Shows a moment until every figure is as it was.
+/// Shows a moment until every value is replayed.
 fn settled(past: &mut Past, t_s: f64) {
     past.show(t_s);
     past.extent = super::Extent::Plotted;
@@ -98,7 +98,7 @@ fn settled(past: &mut Past, t_s: f64) {
 }
 
 fn same(shown: &[Option<Tick>; 2], replayed: &[Option<Tick>; 2]) -> bool {
-    // Also what is not a number must be the same.
+    // NaN must match too.
     format!("{shown:?}") == format!("{replayed:?}")
 }
 
@@ -136,7 +136,7 @@ fn what_is_shown_at_once_has_the_forces_and_places_of_that_tick() {
         let was = ticks[number][0].unwrap();
         assert_eq!((shown.measured_n, shown.rendered_n, shown.tip_m), (was.measured_n, was.rendered_n, was.tip_m));
         assert_eq!((shown.leader_m, shown.state), (was.leader_m, was.state));
-        // By its bits: the link is still filling at the beginning, and no number equals itself.
+        // Compared by bits: the link is still filling at the start, and NaN does not equal itself.
         assert_eq!(shown.delayed_n.map(f64::to_bits), was.delayed_n.map(f64::to_bits));
     }
 }
@@ -228,7 +228,7 @@ fn rings_and_jaws_are_shown_as_they_were_and_move_while_it_is_played() {
     assert_eq!(told.len(), 600);
     let mut past = open(&path);
     until(&mut past, "read", |past| past.read_share() > 0.999);
-    // Those that the screen has of a moment are not older than a hundredth of a second.
+    // Objects on the screen are at most 0.01 s old.
     let then = |t_s: f64| told.iter().rfind(|objects| objects.t_s < t_s + 1e-7).unwrap();
     let shown = |past: &Past| past.live.as_ref().and_then(|live| live.objects.clone());
     let same = |past: &Past| {
@@ -396,7 +396,7 @@ fn a_window_that_is_closed_while_a_stretch_is_saved_leaves_no_half_of_it() {
     assert_eq!(named(".part"), 0, "{} sessions", named(".mcap"));
 }
 
-/// Prints how long it takes until a random moment is on the screen, and until every figure is as it was.
+/// Prints the time until a random moment is on the screen, and until every value is replayed.
 #[test]
 #[ignore = "needs a long session: NIMA_SESSION=FILE"]
 fn figures_of_scrubbing() {

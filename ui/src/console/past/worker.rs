@@ -1,4 +1,4 @@
-//! The thread that reads a session and makes its moments.
+//! The thread that reads a session and produces its moments.
 
 use std::{
     path::Path,
@@ -21,60 +21,58 @@ use super::{
 use crate::console::live::Live;
 use crate::language;
 
-/// What was read is told this often.
+/// Interval of progress reports.
 const TELL_EVERY: Duration = Duration::from_millis(60);
 
-/// What the window wants to see.
+/// A request of the window.
 #[derive(Clone, Copy, Debug)]
 enum Wish {
     /// This time of the session, s.
     Show(f64),
-    /// The moment on the screen to go on up to this time, s.
+    /// Continue the moment on the screen up to this time, s.
     GoOn(f64),
 }
 
-/// What a session tells of itself when it is opened.
+/// Facts that a session reports when it is opened.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub(super) begin_ns: u64,
     pub(super) end_s: f64,
     pub(super) calibrations: Tables,
-    /// By their places in the loop's events.
+    /// By their indices in the loop's events.
     pub(super) devices: Vec<DeviceName>,
-    /// The endoscope whose pictures are in it.
+    /// The endoscope whose images are in it.
     pub(super) endoscope: Option<Endoscope>,
 }
 
-/// How much of a moment is as it was.
+/// Extent of the replay of a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extent {
-    /// Forces, places and states; the rest is at most a tenth of a second older, if the session was read so far.
+    /// Forces, positions and states; the rest is at most 0.1 s older, if the session was read that far.
     Plotted,
-    /// Every figure, with those of the seconds before.
+    /// Every value, with the preceding seconds.
     Whole,
 }
 
-/// What the thread tells.
+/// A message of the thread.
 #[derive(Debug)]
 pub(super) enum Answer {
-    /// The session is open.
     Opened(Box<Opened>),
-    /// It cannot be shown, and why.
+    /// The session cannot be shown, for this reason.
     Refused(String),
     /// More of it was read.
     Read(Overview),
-    /// What comes after the part that was read is only plotted, and why.
+    /// The rest after the part that was read comes only from the recorded plots, for this reason.
     Limited(String),
-    /// A moment.
     Shown(Box<Live>, Extent, f64),
-    /// The moment went on by these ticks; `None` at the end of the session.
+    /// The moment continued by these ticks; `None` at the end of the session.
     WentOn(Option<Vec<Frame>>),
 }
 
 /// The window's end of the thread; dropping it ends the thread.
 #[derive(Debug)]
 pub(super) struct Worker {
-    /// A machine is driven by this computer.
+    /// This computer drives a machine.
     gently: Arc<AtomicBool>,
     wishes: Sender<Wish>,
     answers: Receiver<Answer>,
@@ -99,22 +97,21 @@ impl Worker {
         Self { gently, wishes, answers }
     }
 
-    /// Shows this time, s. Only the newest wish counts.
+    /// Shows this time, s. Only the newest request counts.
     pub(super) fn show(&self, t_s: f64) {
         self.wishes.send(Wish::Show(t_s)).ok();
     }
 
-    /// Lets the moment go on up to this time, s.
+    /// Continues the moment up to this time, s.
     pub(super) fn go_on(&self, to_s: f64) {
         self.wishes.send(Wish::GoOn(to_s)).ok();
     }
 
-    /// Sets whether a machine is driven by this computer, to which the first reading leaves half of the time.
+    /// Sets whether this computer drives a machine, to which the first reading then leaves half of the time.
     pub(super) fn go_gently(&self, gently: bool) {
         self.gently.store(gently, Ordering::Relaxed);
     }
 
-    /// The next answer, if there is one.
     pub(super) fn answer(&self) -> Option<Answer> {
         self.answers.try_recv().ok()
     }
@@ -178,7 +175,7 @@ fn run(path: &Path, wanted: &Receiver<Wish>, told: &Told) -> Result<(), String> 
 /// The window has closed the session.
 struct Gone;
 
-/// The newest wish; waits for one so long, or if there is nothing else to do until there is one.
+/// The newest request; waits for one for `patience`, or without limit if there is no other work.
 fn newest(wanted: &Receiver<Wish>, patience: Option<Duration>) -> Result<Option<Wish>, Gone> {
     let mut newest = match patience.map(|patience| wanted.recv_timeout(patience)) {
         None => Some(wanted.recv().map_err(|_| Gone)?),
@@ -195,13 +192,12 @@ fn newest(wanted: &Receiver<Wish>, patience: Option<Duration>) -> Result<Option<
     }
 }
 
-/// The first reading.
 struct Reading {
     part: Overview,
     told_at: Instant,
     limited: bool,
     goes_on: bool,
-    /// How long the last step took, if a machine is driven by this computer: as long a rest follows.
+    /// Duration of the last step, if this computer drives a machine: an equally long pause follows.
     took: Duration,
 }
 
@@ -223,7 +219,7 @@ impl Reading {
     }
 }
 
-/// What is on the screen, and what is on its way there.
+/// The moment on the screen, and the one in preparation.
 #[derive(Default)]
 struct Shown {
     view: Option<View>,
@@ -254,7 +250,7 @@ impl Shown {
         told.tell(Answer::Shown(Box::new(live), extent, t_s));
     }
 
-    /// What was shown before it was read is shown again, now as it was.
+    /// Shows again a moment that was shown before it was read, now replayed.
     fn again(&mut self, film: &Film<'_>) {
         if let Some(t_s) = self.early_s.take_if(|t_s| film.is_exact(*t_s)) {
             self.chase = Some((film.chase(t_s), t_s));

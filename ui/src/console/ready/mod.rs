@@ -1,4 +1,4 @@
-//! The ready check in the console and without a screen: what it is fed with, its record, and its page.
+//! The ready check in the console and without a screen: its input, its record, and its page.
 
 mod page;
 mod record;
@@ -21,7 +21,7 @@ pub(crate) use record::{devices_of, record};
 
 use super::{door::News, in_force::InForce};
 
-/// What is checked: this rig of this name (built-in, or path of its file) with these devices.
+/// Subject of the check: the rig of this name (built-in, or path of its file) with these devices.
 pub(crate) fn subject(name: &str, rig: &RigConfig, scene: &Scene, roster: &Roster, in_force: &InForce) -> Subject {
     let has_person = rig.devices.is_some() || scene.person.is_some();
     let arm = |side: Side| {
@@ -37,16 +37,16 @@ pub(crate) fn subject(name: &str, rig: &RigConfig, scene: &Scene, roster: &Roste
     }
 }
 
-/// Between two looks no more than this counts: a window or a machine that stood still took nobody's time to press something.
+/// Upper limit of the time counted between two updates: a window or machine that stood still gave the person no time to act.
 const BETWEEN_LOOKS_MOST: Duration = Duration::from_secs(1);
 
-/// A check that goes on, and the clock that it is given.
+/// A running check, and its clock.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) session: Session,
     looked: Instant,
     clock: Duration,
-    /// The arm at which something was asked for last.
+    /// The arm of the last instruction.
     side: Side,
 }
 
@@ -55,7 +55,7 @@ impl Run {
         Self { session: Session::new(subject), looked: Instant::now(), clock: Duration::ZERO, side: Side::Right }
     }
 
-    /// Adds something that came from the loop.
+    /// Adds data from the loop.
     pub(crate) fn take(&mut self, news: &News<'_>) {
         match news {
             News::Tick(tick) => self.session.tick(tick),
@@ -64,7 +64,7 @@ impl Run {
         }
     }
 
-    /// Goes on; returns a command for the loop.
+    /// Continues the check; returns a command for the loop.
     pub(crate) fn look(&mut self) -> Option<Command> {
         let last = std::mem::replace(&mut self.looked, Instant::now());
         self.clock += (self.looked - last).min(BETWEEN_LOOKS_MOST);
@@ -73,15 +73,15 @@ impl Run {
         command
     }
 
-    /// What the technician of an emulated rig is shown.
+    /// Screen shown to the technician of an emulated rig.
     pub(crate) fn screen(&self) -> Screen {
         let ask = self.session.ask();
-        // Out of the trocar he does what is asked for as in the calibration of gravity.
+        // Outside the trocar, the technician follows instructions as in the gravity calibration.
         let task = if ask.is_out_of_trocar() { Task::Gravity } else { Task::Surgery };
         Screen { side: self.side, task, prompt: ask.prompt() }
     }
 
-    /// The instruction that an arm is to have, if it has another one.
+    /// The new instruction for an arm, if it changes.
     pub(crate) fn prompt_for(&self, tick: &Tick) -> Option<Command> {
         let wanted =
             if self.session.ask().side() == Some(tick.side) { self.session.ask().prompt() } else { Prompt::Rest };
@@ -89,7 +89,7 @@ impl Run {
         differs.then_some(Command::Prompt(tick.side, wanted))
     }
 
-    /// What whoever sits at the screen does to obey; `None` for what is done at the arms.
+    /// Action of the person at the screen; `None` for instructions at the arms.
     pub(crate) fn answer(&self) -> Option<Command> {
         match self.session.ask() {
             Ask::PressStop => Some(Command::Stop),

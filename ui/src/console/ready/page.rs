@@ -1,4 +1,4 @@
-//! The page of the ready check: what is to be done now, the list, and what to do with its result.
+//! The page of the ready check: the current instruction, the list, and the buttons for its result.
 
 use egui::{Label, RichText, TextEdit, Ui, vec2};
 use nima_machine::{
@@ -15,18 +15,16 @@ use crate::{
     words::{ask_words, cause_words, check_name, figure_words, lacks_words},
 };
 
-/// What the person wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wish {
-    /// The failed points again.
+    /// Repeat the failed points.
     Again,
-    /// The whole list again.
+    /// Repeat the whole list.
     Whole,
-    /// Back to the monitor.
     Close,
 }
 
-/// Draws the page; `saved` tells where the record is.
+/// Draws the page; `saved` is the text about the record.
 pub(crate) fn ready_ui(
     ui: &mut Ui,
     run: Option<&Run>,

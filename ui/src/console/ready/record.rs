@@ -9,7 +9,7 @@ use nima_recording::store::{CheckedDevice, CheckedItem, Outcome, READY_CHECK, Re
 use crate::language::{self, Language};
 use crate::words::{cause_words, check_name, lacks_words, unit};
 
-/// The devices of a rig with the serial numbers that they told.
+/// The devices of a rig with their reported serial numbers.
 pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
     let device = |entry: &nima_machine::rig::RosterEntry| CheckedDevice {
         name: entry.name().to_owned(),
@@ -19,9 +19,9 @@ pub(crate) fn devices_of(roster: &Roster) -> Vec<CheckedDevice> {
     roster.iter().map(device).collect()
 }
 
-/// The record of this check on the rig of this file, made by this person.
+/// The record of this check on the rig of this file, by this person.
 pub(crate) fn record(session: &Session, rig_file: &str, by: &str, roster: &Roster) -> ReadyRecord {
-    // A file is English, whatever the window shows.
+    // Files are in English, whatever the language of the window.
     let item =
         |entry: &Entry| language::with(Language::English, || item(&check_name(entry.check), &entry.state, roster));
     ReadyRecord {

@@ -1,6 +1,6 @@
-//! Three views of the same loop: a simple monitor for the surgeon, every panel for the technician, and a demonstration
-//! that runs by itself. A role changes the display, never the loop. The one exception is the script of the
-//! demonstration, which runs on simulated rigs only and restores the settings.
+//! Three views of the same loop: a simple monitor for the surgeon, every panel for the technician, and an automatic
+//! demonstration. A role changes the display, never the loop. The one exception is the script of the demonstration, which
+//! runs only on simulated rigs and restores the settings.
 
 pub mod demo;
 mod surgeon;
@@ -30,16 +30,14 @@ use crate::{
     extras::{self, Extra},
 };
 
-/// The user's role.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
-    /// The scene as seen by the endoscope, large; six numbers; alarms.
+    /// The field as seen by the endoscope, large; six numbers; alarms.
     Surgeon,
-    /// Every panel.
     #[default]
     Technician,
-    /// A demonstration that runs by itself.
+    /// An automatic demonstration.
     Demo,
 }
 
@@ -47,7 +45,6 @@ impl Role {
     /// All roles, in the order of their keys.
     pub const ALL: [Self; 3] = [Self::Surgeon, Self::Technician, Self::Demo];
 
-    /// Name on its button.
     pub fn name(self) -> &'static str {
         match self {
             Self::Surgeon => text::roles::SURGEON.get(),
@@ -56,7 +53,6 @@ impl Role {
         }
     }
 
-    /// Its key.
     pub const fn key(self) -> Key {
         match self {
             Self::Surgeon => Key::F1,
@@ -65,7 +61,6 @@ impl Role {
         }
     }
 
-    /// Explanation of the view.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Surgeon => text::roles::SURGEON_HOVER.get(),
@@ -78,27 +73,17 @@ impl Role {
 /// State of the panels of all roles.
 #[derive(Debug)]
 pub struct Panels {
-    /// Mode, gain, delay.
     pub feedback: FeedbackState,
-    /// Traces.
     pub forces: ForcesState,
-    /// Force space.
     pub space: ForceSpaceState,
-    /// Computing time against accuracy, in a build that has it.
+    /// The Trade-off panel, in a build that has it.
     pub tradeoff: Option<Box<dyn Tile>>,
-    /// The operating field.
     pub scene: SceneView,
-    /// The endoscope's picture of it.
     pub eyes: Eyes,
-    /// Side selected in the gates panel.
     pub gates: GatesState,
-    /// Which device is which, and their tests.
     pub devices: DevicesState,
-    /// Histograms of the loop's durations.
     pub timing: TimingState,
-    /// The technician's desk.
     pub desk: Desk,
-    /// State of the demonstration.
     pub demo: DemoState,
 }
 
@@ -123,15 +108,12 @@ impl Default for Panels {
 /// Requests of the operator that are not commands to the loop.
 #[derive(Debug, Default)]
 pub struct Wishes {
-    /// Restart with this rig.
     pub restart: Option<RigConfig>,
-    /// Open or close a wizard.
     pub calibration: Option<CalibrationWish>,
-    /// Use other devices.
     pub devices: Option<Change>,
 }
 
-/// Draws the view of the present role, below the top bar.
+/// Draws the view of the current role, below the top bar.
 pub fn role_ui(
     ui: &mut Ui,
     settings: &mut Settings,
@@ -159,7 +141,7 @@ pub fn role_ui(
     }
 }
 
-/// Draws controls that act on the machine: not while the past is shown.
+/// Draws controls that act on the machine: disabled during playback.
 fn acts<R>(ui: &mut Ui, past: bool, controls: impl FnOnce(&mut Ui) -> R) -> R {
     ui.add_enabled_ui(!past, controls).inner
 }

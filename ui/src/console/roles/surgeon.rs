@@ -1,5 +1,5 @@
-//! The surgeon's view: the endoscope's picture of the field, drawn where the rig has no endoscope, and below it for each hand both forces with the ceiling, and
-//! the gain in between. At most six numbers: two forces of each hand, the gain, the ceiling.
+//! The Surgeon view: the endoscope image, or a drawing of the field for a rig without endoscope; below it both forces with
+//! the ceiling for each hand, and the gain in between. At most six numbers: two forces of each hand, the gain, the ceiling.
 
 use egui::{Align2, CentralPanel, Frame, Margin, Panel, Rect, Sense, Ui, pos2, vec2};
 use nima_machine::rig::Side;
@@ -20,7 +20,6 @@ const GAIN_WIDTH: f32 = 330.0;
 /// Upper end of a bar, as a multiple of the ceiling.
 const BEYOND_CEILING: f64 = 1.25;
 
-/// Draws the view.
 pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
     let past = live.is_shown_only();
     let strip = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
@@ -52,7 +51,7 @@ pub(super) fn surgeon_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outb
     });
 }
 
-/// Why a hand gets less force than it should, and which hand; otherwise the mode.
+/// Reason why a hand gets less force than it should, with the hand; otherwise the mode.
 fn told(live: &Live) -> String {
     let whys: Vec<(Side, String)> =
         live.sides().filter_map(|side| why_no_force(live, side).map(|why| (side, why))).collect();
@@ -64,7 +63,7 @@ fn told(live: &Live) -> String {
     }
 }
 
-/// Explanation of the colours, in the place of a second hand.
+/// Explanation of the colours, instead of a second hand.
 fn told_ui(ui: &Ui, live: &Live, place: Rect) {
     let painter = ui.painter_at(place);
     painter.rect_filled(place, theme::CORNER, theme::now().card);

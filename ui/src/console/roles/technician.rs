@@ -1,4 +1,4 @@
-//! The technician's view: every panel, on a desk that can be rearranged.
+//! The Technician view: every panel, in a layout that can be rearranged.
 
 use egui::{Frame, Margin, Ui};
 
@@ -17,7 +17,6 @@ use crate::console::{
     widgets::weak,
 };
 
-/// Draws the view.
 pub(super) fn technician_ui(
     ui: &mut Ui,
     layout: &mut Layout,
@@ -59,7 +58,7 @@ pub(super) fn technician_ui(
     wishes
 }
 
-/// The devices of a recorded session or of another machine, and what of them is not known here.
+/// The devices of a recorded session or of another machine, and a note on data that are missing here.
 fn devices_then_ui(ui: &mut Ui, live: &Live) {
     let elsewhere = live.of == Of::Elsewhere;
     Frame::new().inner_margin(Margin::same(8)).show(ui, |ui| {
@@ -74,7 +73,7 @@ fn devices_then_ui(ui: &mut Ui, live: &Live) {
     });
 }
 
-/// Forces over time, with space for the last number of the time axis, half of which is beyond the plot.
+/// The traces, with space for the last number of the time axis, half of which is outside the plot.
 fn traces_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels) {
     Frame::new().inner_margin(Margin { left: 8, right: 18, top: 6, bottom: 6 }).show(ui, |ui| {
         forces_ui(ui, live, &mut panels.forces, &[0, 1, 2]);

@@ -1,5 +1,6 @@
-//! Marks the instruments while one is led: a pale circle around the tip of the other one; around the tip of the one that is led a green one, and a line straight down to what is below, because a picture without depth does
-//! not tell over which place it is. Under a ring that the jaws hold is the outline of its hole: a peg that is within it goes through.
+//! Marks the instruments during mouse control: a pale circle around the tip of the other instrument; a green circle around
+//! the tip of the driven one, with a line straight down to the surface below, because a flat image does not show the place
+//! under the tip. Under a ring in the jaws, the outline of its hole: a peg inside it goes through.
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 use nalgebra::Vector3;
@@ -7,34 +8,33 @@ use nima_simulation::scene::Scene;
 
 use super::{Camera, training};
 
-/// The mark: on no other thing in the view.
+/// Colour of the mark, used for nothing else in the view.
 const LED: Color32 = Color32::from_rgb(0x9c, 0xe8, 0x7a);
 const DOWN: Color32 = Color32::from_rgb(0x7d, 0xb0, 0x68);
-/// The circle around the tip that is not led.
+/// The circle around the tip of the other instrument.
 const RESTS: Color32 = Color32::from_rgb(0xd6, 0xde, 0xe6);
-/// Radius of the circle around the tip, points; with a second one while the jaws hold a ring.
+/// Radius of the circle around the tip, points; with a second circle while the jaws hold a ring.
 pub(super) const CIRCLE: f32 = 11.0;
 const SECOND: f32 = 16.0;
 /// Radius of the mark below, m.
 const FOOT_M: f32 = 0.001;
 const CORNERS: u32 = 36;
 
-/// What is marked.
 pub(super) struct Aim<'a> {
     pub(super) scene: &'a Scene,
     pub(super) tip_m: Vector3<f32>,
-    /// The middle of the ring that the jaws hold.
+    /// Centre of the ring in the jaws.
     pub(super) ring_m: Option<Vector3<f32>>,
 }
 
-/// Marks the tip of the other instrument, which is held where it was left.
+/// Marks the tip of the other instrument, which stays where it was left.
 pub(super) fn paint_other(painter: &Painter, rect: Rect, camera: &Camera, tip_m: &Vector3<f32>) {
     if let Some(tip) = camera.project(tip_m, rect) {
         painter.circle_stroke(tip, CIRCLE, Stroke::new(1.5, RESTS));
     }
 }
 
-/// Height of what is below the instruments, m.
+/// Height of the surface below the instruments, m.
 fn ground_m(scene: &Scene) -> Option<f32> {
     let tissue_m = scene.tissue.map(|tissue| tissue.surface_z_m as f32);
     training::board_of(scene).map(|board| board.z_m as f32).or(tissue_m)
@@ -53,7 +53,7 @@ impl Aim<'_> {
         }
     }
 
-    /// From where the line goes down, to where, and what is drawn there. None where nothing is below.
+    /// Start and end of the line, and the shape at its end. `None` without a surface below.
     fn below(&self, rect: Rect, camera: &Camera) -> Option<(Pos2, Pos2, Vec<Pos2>)> {
         let ground_m = ground_m(self.scene)?;
         let from_m = self.ring_m.unwrap_or(self.tip_m);

@@ -6,18 +6,19 @@ use nima_simulation::scene::Scene;
 
 /// Vertical opening angle of the free view, rad.
 const FIELD_OF_VIEW: f32 = 0.62;
-/// The same for the endoscope, which has a wide angle.
+/// Vertical opening angle of the endoscope view, which is wide, rad.
 const ENDOSCOPE_FIELD: f32 = 0.92;
-/// How far the endoscope is from tissue, and from a board with rings or a wire: from there the whole board and the hands above it are in the picture, m.
+/// Distance of the endoscope from tissue, and from a board with rings or a wire: from there the image shows the whole board
+/// and the hands above it, m.
 const NEAR_TISSUE_M: f32 = 0.128;
 const NEAR_BOARD_M: f32 = 0.168;
 const DISTANCE_M: std::ops::RangeInclusive<f32> = 0.06..=0.9;
 /// Range of pitch: from nearly level with the surface to nearly straight down, rad.
 const PITCH: std::ops::RangeInclusive<f32> = 0.03..=1.5;
-/// Sine of the flattest angle at which a level is looked at: below it a point of the screen is centimetres.
+/// Sine of the minimum angle between a horizontal plane and the line of sight: below it a point of the screen covers
+/// centimetres.
 const FLATTEST: f32 = 0.15;
 
-/// Position and direction of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Point looked at, m.
@@ -41,8 +42,8 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Default camera of a scene. Two instruments, and a wire, are seen from the operator's side, so that the right one is on the
-    /// right, and the wire's end.
+    /// Default camera of a scene. Two instruments, and a wire, are seen from the operator's side, so that the right
+    /// instrument and the end of the wire are on the right.
     pub fn of(scene: &Scene) -> Self {
         if scene.left.is_none() && scene.wire.is_none() {
             return Self::default();
@@ -50,10 +51,10 @@ impl Camera {
         Self { target_m: Vector3::new(0.0, -0.012, 0.042), distance_m: 0.30, yaw: 0.16, pitch: 0.58, ..Self::default() }
     }
 
-    /// Camera of the endoscope: between two instruments, or beside a single one.
+    /// Camera of the endoscope: between two instruments, or next to a single one.
     pub fn endoscope(scene: &Scene) -> Self {
         if scene.objects.is_some() || scene.wire.is_some() {
-            // Rings change hands high above the board, where also the hands begin.
+            // Rings are passed between hands high above the board, where the hands also start.
             let target_m = Vector3::new(0.0, 0.0, 0.034);
             return Self { target_m, distance_m: NEAR_BOARD_M, yaw: 0.0, pitch: 0.62, field_of_view: ENDOSCOPE_FIELD };
         }
@@ -100,8 +101,8 @@ impl Camera {
         2.0 * self.distance_m * (0.5 * self.field_of_view).tan() / height.max(1.0)
     }
 
-    /// The depth cue: how much of its brightness a surface loses per metre, and from which distance on, m. As with a light at the lens, what is
-    /// farther than the target is darker.
+    /// The depth cue: loss of brightness per metre, and the distance from which it starts, m. As with a light at the lens,
+    /// objects beyond the target are darker.
     pub fn dims(&self) -> [f32; 2] {
         let distance_m = self.distance_m.max(0.01);
         [0.75 / distance_m, 0.88 * distance_m]
@@ -132,7 +133,7 @@ impl Camera {
         Some(rect.center() + Vec2::new(0.5 * x * rect.width(), -0.5 * y * rect.height()))
     }
 
-    /// Where the ray through a place on the screen comes down to this height, m; `None` if it does not, or too flat.
+    /// Intersection of the ray through a screen position with this height, m; `None` without one, or at too flat an angle.
     pub fn on_level(&self, place: Pos2, rect: Rect, height_m: f32) -> Option<Vector3<f32>> {
         let from_centre = place - rect.center();
         let x = 2.0 * from_centre.x / rect.width();

@@ -22,38 +22,27 @@ use crate::words::side_word;
 const AXIS_M: f32 = 0.016;
 const RING: u32 = 64;
 
-/// Label of the menu of optional objects.
 pub const SHOW: Text = text::field::SHOW;
-/// Hover text of [`SHOW`].
 pub const SHOW_MEANING: Text = text::field::SHOW_HOVER;
-/// Label of the switch for the ceiling.
 pub const CEILING: Text = text::field::CEILING;
-/// Hover text of [`CEILING`].
 pub const CEILING_MEANING: Text = text::field::CEILING_HOVER;
-/// Label of the switch for the frames.
 pub const FRAMES: Text = text::field::FRAMES;
-/// Hover text of [`FRAMES`].
 pub const FRAMES_MEANING: Text = text::field::FRAMES_HOVER;
-/// Label of the switch for shadows.
 pub const SHADOWS: Text = text::field::SHADOWS;
-/// Label of the switch for the depth cue.
 pub const DEPTH: Text = text::field::DEPTH;
-/// Label of the switch for the round picture.
 pub const ROUND: Text = text::field::ROUND;
 
-/// Which objects are shown, and how the picture looks.
+/// Optional objects, and the look of the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct Extras {
-    /// The force ceiling as a sphere.
     pub ceiling: bool,
-    /// Coordinate frames.
     pub frames: bool,
     /// Shadows on a board.
     pub shadows: bool,
-    /// What is farther away is darker.
+    /// More distant objects are darker.
     pub depth: bool,
-    /// The endoscope's picture is round, in the surgeon's view.
+    /// The endoscope image is round, in the Surgeon view.
     pub round: bool,
 }
 
@@ -63,26 +52,19 @@ impl Default for Extras {
     }
 }
 
-/// A switch of the menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Switch {
-    /// [`Extras::ceiling`].
     Ceiling,
-    /// [`Extras::frames`].
     Frames,
-    /// [`Extras::shadows`].
     Shadows,
-    /// [`Extras::depth`].
     Depth,
-    /// [`Extras::round`].
     Round,
 }
 
 impl Switch {
-    /// All of them, in the order of the menu.
+    /// All switches, in the order of the menu.
     pub const ALL: [Self; 5] = [Self::Ceiling, Self::Frames, Self::Shadows, Self::Depth, Self::Round];
 
-    /// Its label.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ceiling => CEILING.get(),
@@ -93,7 +75,6 @@ impl Switch {
         }
     }
 
-    /// Its hover text.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Ceiling => CEILING_MEANING.get(),
@@ -114,7 +95,7 @@ struct Axes {
 }
 
 impl Extras {
-    /// What this switch switches.
+    /// The setting that this switch changes.
     pub(in crate::console) const fn of(&mut self, switch: Switch) -> &mut bool {
         match switch {
             Switch::Ceiling => &mut self.ceiling,
@@ -125,13 +106,13 @@ impl Extras {
         }
     }
 
-    /// The menu, beside the switch that leads the instrument.
+    /// The menu, next to the switch for mouse control.
     pub(super) fn ui(&mut self, ui: &mut Ui, rect: Rect) {
         let place = Rect::from_min_size(rect.right_bottom() - vec2(330.0, 46.0), vec2(72.0, 34.0)).intersect(rect);
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             let on = *self != Self::default();
             let button = Button::selectable(on, SHOW.get()).frame_when_inactive(true).min_size(place.size());
-            // Stays open until a click elsewhere, because often both switches are wanted.
+            // Stays open until a click elsewhere, because users often need several switches.
             let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             let menu = MenuButton::from_button(button).config(config);
             let (response, _) = menu.ui(ui, |ui| {
@@ -144,7 +125,6 @@ impl Extras {
         });
     }
 
-    /// Draws the selected objects.
     pub(super) fn paint(
         self,
         painter: &Painter,

@@ -16,7 +16,6 @@ use super::mesh::{Material, Mesh};
 /// Data of one frame.
 #[derive(Debug)]
 pub struct Frame {
-    /// The triangles.
     pub mesh: Mesh,
     /// Transformation from workspace to clip space.
     pub clip_from_workspace: Matrix4<f32>,
@@ -24,11 +23,10 @@ pub struct Frame {
     pub eye_m: Vector3<f32>,
     /// Tip and top of each instrument's shaft, m, for their shadows. At most two shafts are used.
     pub shafts_m: Vec<[Vector3<f32>; 2]>,
-    /// How much of its brightness a surface loses per metre, and from which distance on, m.
+    /// Loss of brightness per metre, and the distance from which it starts, m.
     pub dims: [f32; 2],
     /// Colours at the top and at the bottom of the background.
     pub backdrop: [Color32; 2],
-    /// Draw with antialiasing.
     pub smooth: bool,
 }
 
@@ -52,7 +50,7 @@ pub struct Renderer {
     array: glow::VertexArray,
     vertices: glow::Buffer,
     indices: glow::Buffer,
-    /// Created when first needed and when the view changes its size.
+    /// Created when first needed and when the size of the view changes.
     target: Mutex<TargetState>,
 }
 
@@ -76,7 +74,7 @@ struct Target {
 impl Renderer {
     /// Compiles the shader programs; the error is the driver's message.
     pub fn new(gl: &glow::Context) -> Result<Self, String> {
-        // SAFETY: called with eframe's current context; every object made here is destroyed in `destroy`.
+        // SAFETY: called with eframe's current context; every object created here is destroyed in `destroy`.
         unsafe {
             let programs = PROGRAMS
                 .iter()
@@ -169,7 +167,7 @@ impl Renderer {
     /// Releases all objects on the GPU.
     pub fn destroy(&self, gl: &glow::Context) {
         let state = self.target.lock().unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: the objects were made in this context and are not used again.
+        // SAFETY: the objects were created in this context and are not used again.
         unsafe {
             if let TargetState::Made(target) = &*state {
                 target.destroy(gl);

@@ -1,7 +1,7 @@
-//! Leads an instrument with mouse and keyboard, for demonstrations and training tasks without a haptic device.
+//! Drives an instrument with mouse and keyboard, for demonstrations and training tasks without a haptic device.
 //!
 //! The window sends positions (m, workspace). The simulated hand moves there and yields to the rendered force. With two
-//! instruments one is led and the other one is held where it was left, jaws and all, until a key changes which is led. Leading
+//! instruments, one is driven and the other one stays where it was left, including its jaws, until a key swaps them. Driving
 //! ends when the loop stops.
 
 use egui::{Button, Event, Key, PointerButton, Pos2, Rect, Response, RichText, Ui, Vec2, vec2};
@@ -16,51 +16,50 @@ use crate::console::{text, theme};
 
 /// Motion per press of an arrow key, m.
 const STEP_M: f32 = 0.001;
-/// How far the key opens the jaws, rad; jaws that hold a ring are nearer to closed than this share of it.
+/// Opening angle of the jaws by key, rad; jaws closed below this fraction of it hold a ring.
 const OPEN_RAD: f64 = 0.6;
 const OPEN_SHARE: f64 = 0.8;
-/// Change of height per point of the wheel, m: 4 mm for a notch.
+/// Change of height per point of the wheel, m: 4 mm per notch.
 const WHEEL_M: f32 = 0.00005;
-/// Space in which the instrument may be led: half width, half depth, lowest and highest, m.
+/// Space in which the instrument may be driven: half width, half depth, lowest and highest, m.
 const SIDE_M: f32 = 0.055;
 const HEIGHT_M: std::ops::RangeInclusive<f32> = -0.02..=0.095;
-/// Deepest into a board, m: the simulated hand presses on it with 2 N then.
+/// Maximum depth into a board, m: the simulated hand then presses on it with 2 N.
 const INTO_BOARD_M: f32 = 0.002;
 
-/// Which instrument is led, and to which position.
+/// The driven instrument, and its target position.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lead {
-    /// Where each instrument is led or held, m; none while nobody leads.
+    /// Target position of each instrument, m; `None` without mouse control.
     at_m: [Option<Vector3<f32>>; SIDES],
-    /// The one that mouse and keys move.
+    /// The instrument that mouse and keys move.
     side: Side,
-    /// The jaws are held open; not known before the first press of the key.
+    /// The jaws are held open; unknown before the first press of the key.
     open: [Option<bool>; SIDES],
-    /// Where the pointer was last, while it drags the instrument.
+    /// Last pointer position while it drags the instrument.
     drag: Option<Pos2>,
-    /// How low it may be led, m.
+    /// Minimum height, m.
     lowest_m: f32,
-    /// It is led all the time and cannot be let go: the hand of a study's participant.
+    /// Always driven, without an end: the hand of a study's participant.
     pub(super) is_held: bool,
 }
 
 impl Lead {
-    /// Whether an instrument is led.
+    /// Whether an instrument is driven.
     pub(super) fn is_on(self) -> bool {
         self.at_m.iter().any(Option::is_some)
     }
 
-    /// The instrument that mouse and keys move.
     pub(super) fn side(self) -> Option<Side> {
         self.is_on().then_some(self.side)
     }
 
-    /// The instrument whose tip is marked: also before the first tick of a participant's trial.
+    /// The instrument whose tip is marked, even before the first tick of a participant's trial.
     pub(super) fn marked(self) -> Option<Side> {
         (self.is_on() || self.is_held).then_some(self.side)
     }
 
-    /// Ends the leading.
+    /// Ends mouse control.
     pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
         for side in Side::ALL {
             if self.at_m[side.index()].is_some() {
@@ -73,12 +72,12 @@ impl Lead {
         self.forget();
     }
 
-    /// The loop has ended the leading already.
+    /// The loop has already ended mouse control.
     fn forget(&mut self) {
         *self = Self { side: self.side, is_held: self.is_held, ..Self::default() };
     }
 
-    /// Begins: every instrument is held where its hand is now, and one of them is led.
+    /// Starts: every instrument stays where its hand is, and one of them is driven.
     fn take(&mut self, live: &Live, outbox: &mut Outbox) {
         let board_m = training::board_of(&live.scene).map(|board| board.z_m as f32 - INTO_BOARD_M);
         self.lowest_m = board_m.unwrap_or(*HEIGHT_M.start());
@@ -105,7 +104,7 @@ impl Lead {
         }
     }
 
-    /// Leads the other instrument, if there is one.
+    /// Drives the other instrument, if there is one.
     fn change_side(&mut self) {
         if self.at_m[self.side.other().index()].is_some() {
             self.side = self.side.other();
@@ -113,11 +112,10 @@ impl Lead {
         }
     }
 
-    /// Opens or closes the jaws.
     fn jaws(&mut self, live: &Live, outbox: &mut Outbox) {
         let i = self.side.index();
         let opening_rad = live.objects.as_ref().and_then(|objects| objects.jaws[i]).map(|jaws| jaws.opening_rad);
-        // The hand may have opened them before it was led.
+        // The hand may have opened them before it was driven.
         let was_open = self.open[i].unwrap_or_else(|| opening_rad.is_some_and(|rad| rad > OPEN_SHARE * OPEN_RAD));
         self.open[i] = Some(!was_open);
         outbox.push(Command::Grip(self.side, Some(if was_open { 0.0 } else { OPEN_RAD })));
@@ -161,7 +159,7 @@ impl Lead {
         self.is_on()
     }
 
-    /// Does what mouse and keys say, in their order: where frames are few, many of them come at once.
+    /// Applies mouse and keys in their order: at a low frame rate many of them arrive at once.
     fn steer(&mut self, ui: &Ui, rect: Rect, view: &Response, live: &Live, camera: &Camera, outbox: &mut Outbox) {
         let before_m = self.at_m;
         let takes = view.contains_pointer() || view.is_pointer_button_down_on();
@@ -210,15 +208,15 @@ impl Lead {
         }
     }
 
-    /// Moves the instrument that is led so far, m.
+    /// Moves the driven instrument by this vector, m.
     fn step(&mut self, way_m: Vector3<f32>) {
         if let Some(at_m) = &mut self.at_m[self.side.index()] {
             *at_m = within(*at_m + way_m, self.lowest_m);
         }
     }
 
-    /// The pointer is here now: the instrument that it drags moves with it. Not with egui's `dragged`, which takes the first points of a drag
-    /// for a click and leaves out what came with the release.
+    /// Moves the dragged instrument with the pointer. egui's `dragged` is not used: it takes the first points of a drag as a
+    /// click and omits the motion that arrives with the release.
     fn drag_to(&mut self, pos: Pos2, camera: &Camera, rect: Rect) {
         let (Some(from), Some(at_m)) = (&mut self.drag, &mut self.at_m[self.side.index()]) else { return };
         *at_m = within(moved_m(at_m, pos - std::mem::replace(from, pos), camera, rect), self.lowest_m);
@@ -233,14 +231,14 @@ fn within(at_m: Vector3<f32>, lowest_m: f32) -> Vector3<f32> {
     )
 }
 
-/// The place at the same height, so many points away on the screen: the tip stays under the pointer.
+/// The position at the same height, this many points away on the screen: the tip stays under the pointer.
 fn moved_m(at_m: &Vector3<f32>, way: Vec2, camera: &Camera, rect: Rect) -> Vector3<f32> {
     if way == Vec2::ZERO {
         return *at_m;
     }
     let to_m = camera.project(at_m, rect).and_then(|at| camera.on_level(at + way, rect, at_m.z));
     to_m.unwrap_or_else(|| {
-        // Seen too flat for that.
+        // The line of sight is too flat for that.
         let way_m = way * camera.metres_per_point(rect.height());
         at_m + camera.right() * way_m.x - camera.away() * way_m.y
     })

@@ -29,14 +29,11 @@ pub struct Vertex {
     pub colour: [u8; 4],
 }
 
-/// Colour and material.
 #[derive(Clone, Copy, Debug)]
 pub struct Paint(pub Color32, pub Material);
 
-/// A list of triangles.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// The vertices.
     pub vertices: Vec<Vertex>,
     /// Indices of the vertices, three per triangle.
     pub indices: Vec<u32>,
@@ -112,7 +109,7 @@ impl Mesh {
         let first = self.vertices.len() as u32;
         let (mut u, _) = across(&way(0).normalize());
         for (i, point) in points.iter().enumerate() {
-            // The frame turns as little as it can, so that the tube is not twisted.
+            // The frame turns as little as possible, so that the tube is not twisted.
             let along = way(i).normalize();
             u = (u - along * along.dot(&u)).try_normalize(1e-6).unwrap_or_else(|| across(&along).0);
             let v = along.cross(&u);
@@ -135,7 +132,6 @@ impl Mesh {
         }
     }
 
-    /// A ball.
     pub fn sphere(&mut self, centre: Vector3<f32>, radius: f32, rings: u32, paint: Paint) {
         let first = self.vertices.len() as u32;
         let sides = 2 * rings;
@@ -172,7 +168,7 @@ impl Mesh {
         self.sheet(first, AROUND, ACROSS);
     }
 
-    /// A torus about its own z, turned: from its middle to the middle of its tube, and the radius of the tube.
+    /// A torus about its own z axis, rotated: distance from its centre to the centre of its tube, and radius of the tube.
     pub fn torus(&mut self, centre: Vector3<f32>, turn: &UnitQuaternion<f32>, [major, tube]: [f32; 2], paint: Paint) {
         const AROUND: u32 = 28;
         const ACROSS: u32 = 12;

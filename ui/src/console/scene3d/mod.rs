@@ -1,5 +1,5 @@
-//! The 3-D view of the operating field: triangles built by [`stage`], drawn by the GPU ([`gl`]) inside egui's frame,
-//! with labels by egui's painter over them. Without a GPU (in tests) everything but the triangles is drawn.
+//! The 3-D view of the operating field: triangles built by [`stage`], drawn by the GPU ([`gl`]) inside egui's frame, with
+//! labels by egui's painter over them. Without a GPU (in tests) everything except the triangles is drawn.
 
 mod aim;
 pub mod camera;
@@ -38,13 +38,10 @@ use self::{
 use super::{live::Live, outbox::Outbox, theme};
 use crate::console::text;
 
-/// The two cameras.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Look {
-    /// A free camera.
     #[default]
     Free,
-    /// The endoscope's view.
     Endoscope,
 }
 
@@ -52,22 +49,19 @@ pub enum Look {
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub struct SceneView {
-    /// Draw with antialiasing.
     pub smooth: bool,
-    /// Selected camera.
     pub look: Look,
     /// Show the forces as numbers and gauges.
     pub figures: bool,
     /// Draw the forces as arrows.
     pub arrows: bool,
-    /// Optional objects.
     pub extras: Extras,
-    /// It was drawn in this frame.
+    /// Drawn in this frame.
     pub(in crate::console) is_seen: bool,
     camera: Camera,
     /// Name of the scene for which the cameras were set.
     set_for: Option<String>,
-    /// Where the tips are before the first tick.
+    /// Tip positions before the first tick.
     starts_m: [Option<Vector3<f64>>; SIDES],
     lead: Lead,
     renderer: Option<Arc<Renderer>>,
@@ -118,28 +112,28 @@ impl SceneView {
         }
     }
 
-    /// Another view that draws with the same objects on the GPU, with a camera of its own; this one releases them.
+    /// A second view that uses the same GPU objects, with its own camera; this view releases them.
     pub(super) fn twin(&self) -> Self {
         Self { renderer: self.renderer.clone(), problem: self.problem.clone(), ..Self::default() }
     }
 
-    /// The instrument is no longer led from the window.
+    /// Ends mouse control.
     pub(super) fn let_go(&mut self, outbox: &mut Outbox) {
         self.lead.let_go(outbox);
     }
 
-    /// What a participant of a study sees: no arrow, whose force would tell the condition. `leads`: the instrument is led all the time.
+    /// View of a study's participant: without arrows, because a force would reveal the condition. `leads`: the instrument is
+    /// always driven.
     pub(super) const fn be_of_participant(&mut self, is_of: bool, leads: bool) {
         self.arrows = !is_of;
         self.lead.is_held = leads;
     }
 
-    /// Whether the instrument is led from the window.
+    /// Whether mouse control is on.
     pub fn is_led(&self) -> bool {
         self.lead.is_on()
     }
 
-    /// The present camera.
     fn camera(&self, scene: &Scene) -> Camera {
         match self.look {
             Look::Free => self.camera,
@@ -168,7 +162,7 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
     // Reserves a place below the buttons of the view, because the triangles are known only later.
     let ground = ui.painter_at(rect).add(egui::Shape::Noop);
     let camera = view.camera(&live.scene);
-    // Not in a surgeon's view: the surgeon leads with the handle.
+    // Not in the Surgeon view: the surgeon uses the handle.
     let offered = view.figures || view.lead.is_on() || view.lead.is_held;
     if view.figures {
         view.extras.ui(ui, rect);
@@ -212,10 +206,10 @@ pub fn scene_ui(ui: &mut Ui, live: &Live, view: &mut SceneView, outbox: &mut Out
         axes(&painter, rect, &camera);
     }
     hint(&painter, rect, live, view);
-    // The keys of a trial in a study are told beside it, but for those of the jaws.
+    // The keys of a study trial are shown next to it, except those of the jaws.
     let told_led = led.filter(|_| !view.lead.is_held || live.scene.objects.is_some());
     training::line_ui(ui, rect, training::told(live, told_led, reach), readings_width(live), view.figures);
-    // No hover texts in a surgeon's view, nor over what is led.
+    // No hover texts in the Surgeon view, nor over the driven instrument.
     let pointed_at = response.hover_pos().filter(|_| view.figures && !response.dragged() && !leading);
     if let Some(words) = pointed_at.and_then(|pointer| pick::pick(pointer, rect, &camera, &live.scene, &arms)) {
         response.on_hover_text_at_pointer(words);
@@ -236,7 +230,8 @@ fn turn(ui: &Ui, live: &Live, view: &mut SceneView, response: &egui::Response, l
     }
 }
 
-/// The objects of one side from its newest tick; before there is one, where the task begins. Its forces only where arrows are drawn.
+/// The objects of one side from its newest tick, or the start of the task before the first tick. Forces only if arrows are
+/// drawn.
 fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
     let scene = live.scene.of_side(side)?;
     let finite = |v: Vector3<f64>| v.iter().all(|x| x.is_finite());
@@ -247,7 +242,7 @@ fn arm(live: &Live, side: Side, view: &SceneView) -> Option<Arm> {
         measured_n: tick.known_n().map(nalgebra::Matrix::cast),
         rendered_n: tick.rendered_n.cast(),
     });
-    // Hidden forces say nothing, not even that they are unknown.
+    // Hidden forces must not reveal anything, not even that they are unknown.
     let hidden = Pose { measured_n: Some(Vector3::zeros()), rendered_n: Vector3::zeros(), ..pose };
     let pose = if view.arrows { pose } else { hidden };
     Some(Arm {
@@ -279,7 +274,7 @@ fn triangles(
     let right = camera.right();
     let style = stage::Style { eye_m: &eye_m, right: &right, fine: smooth, shadows: extras.shadows };
     let is_round = view.look == Look::Endoscope && extras.round;
-    // What a round picture covers is neither drawn nor drawn again.
+    // The covered part of a round image is neither drawn nor redrawn.
     let part = if is_round { vignette::part_of(rect) } else { rect };
     let frame = gl::Frame {
         mesh: stage::build(&live.scene, arms, wanted.shown.as_ref(), style),

@@ -1,4 +1,4 @@
-//! Board, pegs, rings and jaws of a scene with objects; and what moves in any training scene.
+//! Board, pegs, rings and jaws of a scene with objects, and the moving parts of all training scenes.
 
 use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -16,29 +16,28 @@ use crate::console::live::Live;
 pub(super) const BOARD: Paint = Paint(Color32::from_rgb(0x3a, 0x45, 0x52), Material::Matte);
 const PEG: Paint = Paint(Color32::from_rgb(0xc9, 0xcf, 0xd6), Material::Matte);
 const RING: Paint = Paint(Color32::from_rgb(0xe0, 0x8a, 0x2e), Material::Matte);
-/// A ring that the jaws of the instrument that is led would take, and one that they hold.
+/// A ring that the jaws of the driven instrument would grip, and one that they hold.
 const RING_REACHED: Paint = Paint(Color32::from_rgb(0xf7, 0xdc, 0xb4), Material::Matte);
 const RING_HELD: Paint = Paint(Color32::from_rgb(0x9c, 0xe8, 0x7a), Material::Matte);
 const FINGER: Paint = Paint(Color32::from_rgb(0xb4, 0xbc, 0xc6), Material::Metal);
 const BOARD_THICKNESS_M: f32 = 0.003;
 
-/// What moves besides the instruments.
+/// Moving parts in addition to the instruments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     rings: Vec<(Vector3<f32>, UnitQuaternion<f32>)>,
-    /// What the jaws of the instrument that is led would take or hold, if one is led.
+    /// The ring that the jaws of the driven instrument would grip or hold.
     pub(super) reach: Option<Reach>,
-    /// Not known in sessions of older versions.
+    /// Unknown in sessions of older versions.
     opening_rad: [Option<f32>; SIDES],
-    /// Places that were marked; whether a lump lies there, which is only shown when the trial is over.
+    /// Marked places, each with whether it is on a lump (shown only after the trial).
     pub(super) marks: Vec<(Vector3<f32>, bool)>,
     pub(super) loops: [LoopSeen; SIDES],
-    /// The trial is over.
     pub(super) ended: bool,
 }
 
 impl Shown {
-    /// What was told last, with the instrument that is led; `None` in a scene without a training task of its own.
+    /// The last reported objects, with the driven instrument; `None` in a scene without its own training task.
     pub(super) fn of(live: &Live, led: Option<Side>) -> Option<Self> {
         if !live.scene.is_played() {
             return None;
@@ -64,7 +63,7 @@ impl Shown {
         })
     }
 
-    /// The middle of the ring that the jaws of the instrument that is led hold, m.
+    /// Centre of the ring in the jaws of the driven instrument, m.
     pub(super) fn held_m(&self) -> Option<Vector3<f32>> {
         let held = self.reach.filter(|reach| matches!(reach, Reach::Held(_)))?;
         self.rings.get(held.ring()).map(|(middle_m, _)| *middle_m)
@@ -106,7 +105,7 @@ pub(super) fn ground(mesh: &mut Mesh, scene: &Scene, shown: &Shown, shadows: &mu
     }
 }
 
-/// Both fingers, which the wrist holds upright; where the shaft ends. `None` where they are not known.
+/// Both fingers, held upright by the wrist; returns the end of the shaft. `None` if they are unknown.
 pub(super) fn jaws(
     mesh: &mut Mesh,
     scene: &Scene,

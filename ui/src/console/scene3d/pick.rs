@@ -51,7 +51,7 @@ fn of_arm(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene, arm: &Arm, 
     near(trocar_m).then(|| text::field::trocar(&whose, &place(trocar_m)))
 }
 
-/// A position in millimetres in the base's frame.
+/// A position in millimetres in the base frame.
 fn place(at_m: &Vector3<f32>) -> String {
     text::field::place((at_m * 1e3).into())
 }
@@ -63,7 +63,7 @@ fn distance(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     point.distance(from + way * along)
 }
 
-/// Where the ray through the pointer meets the tissue's surface at rest, m.
+/// Intersection of the ray through the pointer with the tissue's surface at rest, m.
 fn on_tissue(pointer: Pos2, rect: Rect, camera: &Camera, scene: &Scene) -> Option<Vector3<f32>> {
     let tissue = scene.tissue?;
     let place_m = camera.on_level(pointer, rect, tissue.surface_z_m as f32)?;

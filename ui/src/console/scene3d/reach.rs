@@ -1,41 +1,41 @@
-//! What the jaws of an instrument would take, or hold: who leads it by mouse cannot feel that.
+//! The ring that an instrument's jaws would grip or hold: a user who drives by mouse cannot feel it.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use nima_session::objects::Jaws;
 use nima_simulation::physics::Setting;
 
-/// A ring, as far as jaws are concerned.
+/// Relation of a ring to the jaws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reach {
-    /// The open jaws are above it: straight down they come around its rim.
+    /// The open jaws are above it: moved straight down, they enclose its rim.
     Above(usize),
-    /// It is between the open jaws.
+    /// Between the open jaws.
     Between(usize),
-    /// They hold it.
+    /// Held by the jaws.
     Held(usize),
 }
 
-/// Fingers that something presses apart by more than this hold it, N.
+/// Fingers pressed apart by more than this force hold an object, N.
 const HELD_N: f64 = 0.2;
-/// Jaws that are open less than this, rad, take nothing.
+/// Jaws open less than this cannot grip, rad.
 const OPEN_RAD: f64 = 0.4;
-/// Where a rim may be between fingers: how far from their plane, and from the tip upwards, m.
+/// Maximum distance of a rim from the plane of the fingers, and above the tip, m.
 const BESIDE_M: f64 = 0.0015;
 const DEEP_M: std::ops::RangeInclusive<f64> = -0.0005..=0.006;
-/// Of the rim's direction, the largest part across the fingers' plane: jaws that lie along a rim close beside it.
+/// Maximum component of the rim's direction across the fingers' plane: jaws parallel to a rim close next to it.
 const ALONG_MOST: f64 = 0.5;
-/// How far jaws that hold a ring may seem to be off its rim, m: ring and jaws are told some milliseconds after the tip.
+/// Maximum apparent distance of jaws from the rim that they hold, m: ring and jaws are reported some milliseconds after the
+/// tip.
 const HELD_OFF_M: f64 = 0.004;
 
 impl Reach {
-    /// The number of the ring.
     pub(super) const fn ring(self) -> usize {
         match self {
             Self::Above(ring) | Self::Between(ring) | Self::Held(ring) => ring,
         }
     }
 
-    /// Of jaws at this tip (m, `world`), which open along x, among these rings.
+    /// For jaws at this tip (m, `world`), which open along x, among these rings.
     pub(super) fn of(
         setting: &Setting,
         rings: &[(Vector3<f32>, UnitQuaternion<f32>)],
@@ -49,7 +49,7 @@ impl Reach {
             return held.filter(|(_, off_m)| *off_m < HELD_OFF_M).map(|(i, _)| Self::Held(i));
         }
         let fits = rims.filter(|(_, rim)| jaws.opening_rad > OPEN_RAD && rim.fits(setting, jaws.opening_rad));
-        // The uppermost of those below the jaws.
+        // The uppermost of the rings below the jaws.
         let (i, rim) = fits
             .filter(|(_, rim)| rim.from_tip_m.z <= *DEEP_M.end())
             .max_by(|one, other| one.1.from_tip_m.z.total_cmp(&other.1.from_tip_m.z))?;
@@ -57,7 +57,7 @@ impl Reach {
     }
 }
 
-/// The place on a ring that is nearest to jaws, seen from above.
+/// The point of a ring nearest to the jaws, seen from above.
 struct Rim {
     from_tip_m: Vector3<f64>,
     /// Direction of the rim there.

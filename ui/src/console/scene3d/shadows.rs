@@ -1,5 +1,6 @@
-//! Shadows on a board: what stands between it and the lamp, laid flat along the light. A few triangles each, because a processor without a graphics
-//! card could not trace rays for every pixel of a board. The shader of the tissue works out those of the shafts there.
+//! Shadows on a board: objects between the board and the lamp, projected along the light. A few triangles each, because a
+//! software renderer could not trace rays for every pixel of a board. On tissue, the shader computes the shadows of the
+//! shafts.
 
 use egui::Color32;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -9,23 +10,23 @@ use super::{
     objects::BOARD,
 };
 
-/// The direction to the lamp; that of the shader.
+/// Direction to the lamp, as in the shader.
 const LAMP: Vector3<f32> = Vector3::new(-0.42, 0.30, 0.857);
-/// How much wider half a shadow grows, and its core narrower, per height above the board.
+/// Increase of a shadow's half width, and decrease of its core's, per height above the board.
 const BLUR: f32 = 0.035;
-/// The core is never thinner than this share of the object.
+/// Minimum width of the core, as a fraction of the object's width.
 const CORE_LEAST: f32 = 0.35;
-/// Height of the edges of shadows and of their cores above the board, m: the core lies over all edges.
+/// Height of the edges of shadows and of their cores above the board, m: the core is above all edges.
 const LIFT_M: [f32; 2] = [4e-5, 8e-5];
 /// Brightness of edge and core.
 const SHADE: [f32; 2] = [0.80, 0.56];
-/// Places around a ring, and along a rod.
+/// Number of points around a ring, and along a rod.
 const AROUND: u32 = 28;
 const ALONG: u32 = 16;
 /// Corners of a round end.
 const CAP: u32 = 12;
 
-/// Shadows on one board, which are gathered while objects are drawn.
+/// Shadows on one board, collected while objects are drawn.
 #[derive(Debug)]
 pub(super) struct Shadows {
     board: Option<nima_simulation::physics::Board>,
@@ -34,12 +35,12 @@ pub(super) struct Shadows {
 }
 
 impl Shadows {
-    /// On this board; without one there are none.
+    /// Without a board there are none.
     pub(super) fn on(board: Option<&nima_simulation::physics::Board>) -> Self {
         Self { board: board.copied(), edges: Mesh::default(), cores: Mesh::default() }
     }
 
-    /// Of a tube along points.
+    /// Adds a tube along points.
     pub(super) fn line(&mut self, points_m: impl IntoIterator<Item = Vector3<f32>>, radius_m: f32) {
         let Some(board) = self.board else { return };
         let fallen: Vec<(Vector3<f32>, f32)> =
@@ -55,13 +56,13 @@ impl Shadows {
         }
     }
 
-    /// Of a straight rod.
+    /// Adds a straight rod.
     pub(super) fn rod(&mut self, from_m: &Vector3<f32>, to_m: &Vector3<f32>, radius_m: f32) {
         let way_m = to_m - from_m;
         self.line((0..=ALONG).map(|step| from_m + way_m * (step as f32 / ALONG as f32)), radius_m);
     }
 
-    /// Of a ring about its own z, turned.
+    /// Adds a ring about its own z axis, rotated.
     pub(super) fn circle(&mut self, centre_m: &Vector3<f32>, turn: &UnitQuaternion<f32>, [major_m, tube_m]: [f32; 2]) {
         let place = |step: u32| {
             let (sin, cos) = (std::f32::consts::TAU * step as f32 / AROUND as f32).sin_cos();
@@ -70,7 +71,7 @@ impl Shadows {
         self.line((0..=AROUND).map(place), tube_m);
     }
 
-    /// Lays them on the board.
+    /// Draws them on the board.
     pub(super) fn lay(self, mesh: &mut Mesh) {
         for part in [self.cores, self.edges] {
             let first = mesh.vertices.len() as u32;
@@ -80,7 +81,7 @@ impl Shadows {
     }
 }
 
-/// Where the shadow of a point falls on a plane of this height, m, and how high the point is above it.
+/// Position of a point's shadow on a plane of this height, m, and height of the point above it.
 fn fallen(point_m: &Vector3<f32>, plane_m: f32) -> Option<(Vector3<f32>, f32)> {
     let height_m = (point_m.z - plane_m).max(0.0);
     let at_m = point_m - LAMP * (height_m / LAMP.z);
@@ -92,7 +93,7 @@ fn shaded(colour: Color32, share: f32) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A flat band along points, as wide as `width_m` has it for each height, cut off at the edges of the board.
+/// A flat band along points, with the width that `width_m` gives for each height, cut off at the edges of the board.
 fn band(
     mesh: &mut Mesh,
     points: &[(Vector3<f32>, f32)],
@@ -154,7 +155,7 @@ mod tests {
         shadows.rod(&foot_m, &(foot_m + Vector3::z() * 0.02), 0.001);
         let mesh = laid(shadows);
         let end = mesh.vertices.iter().map(|vertex| vertex.position[0]).fold(0.0, f32::max);
-        // The lamp stands at x < 0; the edge is wider than the rod.
+        // The lamp is at x < 0; the edge is wider than the rod.
         assert!((end - 0.02 * 0.42 / 0.857).abs() < 0.002, "{end}");
         assert!(mesh.vertices.iter().all(|vertex| (vertex.position[2] - 0.01 - 6e-5).abs() < 3e-5));
         let mut shadows = Shadows::on(Some(&board));

@@ -43,7 +43,7 @@ const TRAIL: Paint = Paint(Color32::from_rgb(0xc8, 0xcf, 0xd8), Material::Plain)
 pub struct Pose {
     /// Tip of the instrument, m.
     pub tip_m: Vector3<f32>,
-    /// Force measured at it, N; `None` while it is not known.
+    /// Force measured at it, N; `None` while it is unknown.
     pub measured_n: Option<Vector3<f32>>,
     /// Force rendered to the hand, N.
     pub rendered_n: Vector3<f32>,
@@ -57,10 +57,9 @@ pub struct Dent {
 }
 
 impl Dent {
-    /// No dent.
     pub const NONE: Self = Self { at_m: [0.0; 2], depth_m: 0.0 };
 
-    /// The deformation by a tip in the scene's tissue; none if the tip is beside or above it.
+    /// The deformation by a tip in the scene's tissue; none if the tip is next to or above it.
     pub fn new(scene: &Scene, tip_m: &Vector3<f32>) -> Self {
         let depth_m = scene.tissue.map_or(0.0, |tissue| {
             let [x_m, y_m] = tissue.size_m.map(|x| 0.5 * x as f32);
@@ -87,7 +86,7 @@ impl Dent {
 pub struct Dents(pub [Dent; SIDES]);
 
 impl Dents {
-    /// Change of height at a position, m. Where two overlap the deeper one counts: tissue is never below the lowest
+    /// Change of height at a position, m. Where two dents overlap the deeper one counts: tissue is never below the lowest
     /// tip.
     pub fn lift_m(&self, x: f32, y: f32) -> f32 {
         let [one, other] = self.0.each_ref().map(|dent| dent.lift_m(x, y));
@@ -105,24 +104,21 @@ impl Dents {
 /// The objects of one arm pair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Side of the arm.
     pub side: Side,
     /// Position of its trocar, m.
     pub trocar_m: Vector3<f32>,
     /// Positions of its targets, m.
     pub targets_m: Vec<Vector3<f32>>,
-    /// Present pose and forces.
     pub pose: Pose,
     /// Recent positions of its tip, m, oldest first.
     pub trail_m: Vec<Vector3<f32>>,
 }
 
-/// How a scene is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Style<'a> {
-    /// From where it is seen, m.
+    /// Eye position, m.
     pub eye_m: &'a Vector3<f32>,
-    /// The direction to the right of the screen.
+    /// Direction to the right of the screen.
     pub right: &'a Vector3<f32>,
     /// More triangles.
     pub fine: bool,
@@ -130,7 +126,6 @@ pub struct Style<'a> {
     pub shadows: bool,
 }
 
-/// Builds the scene.
 pub fn build(scene: &Scene, arms: &[Arm], shown: Option<&Shown>, style: Style<'_>) -> Mesh {
     let Style { eye_m, right, fine, .. } = style;
     let mut shadows = Shadows::on(training::board_of(scene).filter(|_| style.shadows));
@@ -235,8 +230,8 @@ fn shaft(mesh: &mut Mesh, trocar_m: &Vector3<f32>, knob: &Vector3<f32>) {
 
 const SHAFT: Paint = Paint(Color32::from_rgb(0x6d, 0x76, 0x82), Material::Metal);
 
-/// Starting points of both arrows: beside the tip, on the side that the shaft does not cover in the operator's view,
-/// the measured force further out, so that equal forces do not overlap.
+/// Starting points of both arrows: next to the tip, on the side that the shaft does not cover in the operator's view, the
+/// measured force further out, so that equal forces do not overlap.
 pub fn arrow_bases_m(pose: &Pose, trocar_m: &Vector3<f32>, right: &Vector3<f32>) -> [Vector3<f32>; 2] {
     let side = if (trocar_m - pose.tip_m).dot(right) > 0.0 { -1.0 } else { 1.0 };
     [0.0135, 0.0060].map(|away| pose.tip_m + right * (side * away) + Vector3::z() * 0.002)

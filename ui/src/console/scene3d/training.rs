@@ -1,4 +1,4 @@
-//! Wire and loop, marks and lumps; and one line on how far the trial has come.
+//! Wire and loop, marks and lumps, and one line about the progress of the trial.
 
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -17,7 +17,7 @@ use crate::console::{live::Live, text, theme};
 
 const WIRE: Paint = Paint(Color32::from_rgb(0xa9, 0xbd, 0xcc), Material::Metal);
 const LOOP: Paint = Paint(Color32::from_rgb(0xd8, 0xdd, 0xe2), Material::Metal);
-/// A loop that touches: brighter, and thicker.
+/// A loop in contact: brighter and thicker.
 const LOOP_TOUCHES: Paint = Paint(Color32::from_rgb(0xe0, 0x8a, 0x2e), Material::Plain);
 const THICKER: f32 = 1.5;
 /// The free end of a wire and its goal.
@@ -29,7 +29,7 @@ const LUMP: Paint = Paint(Color32::from_rgb(0x6a, 0x2f, 0x4e), Material::Matte);
 
 /// Width of the gauges at the right of the view, points.
 const GAUGES: f32 = 110.0;
-/// One of so many points of the wire's curve is drawn.
+/// One in this many points of the wire's curve is drawn.
 const POINTS: usize = 3;
 /// Height of a pin, and radius of its head, m.
 const PIN_M: f32 = 0.007;
@@ -59,7 +59,7 @@ pub(super) fn wire(mesh: &mut Mesh, scene: &Scene, shadows: &mut Shadows) {
     shadows.line(points_m, radius_m);
 }
 
-/// The loop of an instrument; where its shaft ends. `None` in a scene without a wire.
+/// The loop of an instrument; returns the end of the shaft. `None` in a scene without a wire.
 pub(super) fn hoop(
     mesh: &mut Mesh,
     scene: &Scene,
@@ -81,7 +81,7 @@ pub(super) fn hoop(
     Some(tip_m + up * major_m)
 }
 
-/// Pins where the operator marked; when the trial is over also the lumps, and marks over none look otherwise.
+/// Pins at the operator's marks; after the trial also the lumps, and false marks look different.
 pub(super) fn marks(mesh: &mut Mesh, scene: &Scene, shown: &Shown, lift_m: impl Fn(f32, f32) -> f32) {
     for (at_m, is_true) in &shown.marks {
         let foot_m = at_m + Vector3::z() * lift_m(at_m.x, at_m.y);
@@ -114,7 +114,7 @@ pub(super) fn board_of(scene: &Scene) -> Option<&nima_simulation::physics::Board
     under_pegs.or_else(|| scene.wire.as_ref().map(|setting| &setting.board))
 }
 
-/// How far the trial has come, in words, and what the instrument that is led reaches; `None` in a scene where that is not known.
+/// Progress of the trial as text, and the ring in reach of the driven instrument; `None` in a scene where it is unknown.
 pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Option<String> {
     let training = live.training.as_ref()?;
     let is_led = led.is_some();
@@ -135,10 +135,10 @@ pub(super) fn told(live: &Live, led: Option<Side>, reach: Option<Reach>) -> Opti
     })
 }
 
-/// Above this delay, s, two hands that hold one ring drive each other through the link with the modes that carry force.
+/// Above this delay, s, two hands that hold one ring excite each other through the link in the modes that carry force.
 const LONG_S: f64 = 0.01;
 
-/// Whether the rings will end in a fault with the present mode.
+/// Whether the rings will end in a fault in the current mode.
 pub(super) fn needs_another_mode(live: &Live) -> bool {
     let carries_force = matches!(live.mode(), Mode::Best | Mode::Anchored);
     let shares_rings = live.scene.objects.is_some() && live.is_bimanual();
@@ -153,10 +153,10 @@ fn name_of(reach: Reach) -> &'static str {
     }
 }
 
-/// The line, at the top of the view; so wide are the readings at its left, if figures are shown.
+/// The line at the top of the view; `readings` is the width of the readings at its left, if figures are shown.
 pub(super) fn line_ui(ui: &mut Ui, rect: Rect, words: Option<String>, readings: f32, figures: bool) {
     let Some(words) = words else { return };
-    // Between the readings and the gauges, where they are shown.
+    // Between the readings and the gauges, if they are shown.
     let room = if figures {
         Rect::from_min_max(rect.left_top() + vec2(readings, 0.0), rect.right_bottom() - vec2(GAUGES, 0.0))
     } else {

@@ -1,25 +1,26 @@
-//! The round picture of an endoscope: outside of a disc with a soft rim there is nothing to see.
+//! The round image of an endoscope: black outside a disc with a soft rim.
 
 use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, pos2};
 use nalgebra::Matrix4;
 
-/// Radius of the disc, in heights of the view: the disc is a little cut off above and below, as on the monitors of an operating room.
+/// Radius of the disc, in heights of the view: the disc is slightly cut off above and below, as on the monitors of an
+/// operating room.
 const RADIUS: f32 = 0.60;
-/// Width of the rim in which the picture fades, in radii.
+/// Width of the rim in which the image fades, in radii.
 const RIM: f32 = 0.05;
 const SIDES: u32 = 96;
 
-/// Radius of what is seen undimmed, and of what is seen at all, points.
+/// Radius of the undimmed part, and of the visible part, points.
 fn radii(rect: Rect) -> [f32; 2] {
-    // In a view that is higher than wide the disc is as wide as the view.
+    // In a view that is higher than wide, the disc is as wide as the view.
     let radius = (RADIUS * rect.height()).min(RADIUS * rect.width());
     [radius * (1.0 - RIM), radius]
 }
 
-/// The part of a view that has the disc in it: beside it nothing is drawn, and nothing changes.
+/// The part of a view with the disc: nothing is drawn or changes outside it.
 pub(super) fn part_of(rect: Rect) -> Rect {
     let [_, dark] = radii(rect);
-    // Whole points, so that its edges are those of pixels.
+    // Whole points, so that its edges are pixel edges.
     let half = (dark.ceil() + 1.0).min(0.5 * rect.width());
     let left = (rect.center().x - half).floor();
     let right = (rect.center().x + half).ceil();
@@ -36,14 +37,14 @@ pub(super) fn part_from_whole(part: Rect, whole: Rect) -> Matrix4<f32> {
     matrix
 }
 
-/// Whether a place, with so much room around it, is in the undimmed part of the picture.
+/// Whether a position, with this much room around it, is in the undimmed part of the image.
 #[cfg(test)]
 pub(super) fn shows(rect: Rect, place: Pos2, room: f32) -> bool {
     let [clear, _] = radii(rect);
     rect.shrink(room).contains(place) && (place - rect.center()).length() + room <= clear
 }
 
-/// Covers what an endoscope does not show.
+/// Covers the area outside the disc.
 pub(super) fn paint(painter: &Painter, rect: Rect) {
     let [clear, dark] = radii(rect);
     let part = part_of(rect);

@@ -1,4 +1,4 @@
-//! What is written on the view: names and numbers beside the objects, the forces in large figures with their gauges, axes, and a hint.
+//! Texts on the view: names and numbers next to the objects, the forces in large figures with their gauges, axes, and a hint.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, pos2, vec2};
 use nalgebra::Vector3;
@@ -14,10 +14,10 @@ use crate::{
 /// enough for the endoscope to see it.
 const NAME_ABOVE_M: [f32; 2] = [0.05, 0.085];
 
-/// Least distance between the names of a hand and of its trocar, points.
+/// Minimum distance between the names of a hand and of its trocar, points.
 const NAMES_APART: f32 = 30.0;
 
-/// Names and numbers beside the objects of one side.
+/// Names and numbers next to the objects of one side.
 pub(super) fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera, arm: &Arm, view: &SceneView) {
     let figures = view.figures;
     let at = |point_m: Vector3<f32>| camera.project(&point_m, rect);
@@ -31,7 +31,7 @@ pub(super) fn labels(painter: &Painter, rect: Rect, live: &Live, camera: &Camera
     };
     let name_at = at(pose.tip_m + along * NAME_ABOVE_M[usize::from(figures)]);
     let name_at = name_at.filter(|place| live.is_bimanual() && free(place));
-    // The name of a hand that is held high is there.
+    // The name of a raised hand takes this place.
     let beside_name = |place: &Pos2| name_at.is_none_or(|name| name.distance(*place) > NAMES_APART);
     if let Some(place) = at(*trocar_m).filter(free).filter(beside_name) {
         label(
@@ -78,7 +78,7 @@ pub fn side_name(side: Side) -> &'static str {
     }
 }
 
-/// Text with a dark outline, legible on any background.
+/// Text with a dark outline, readable on any background.
 pub(super) fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, font: FontId, colour: Color32) {
     for shift in [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(0.0, -1.0)] {
         painter.text(place + shift, align, text, font.clone(), theme::VEIL);
@@ -86,7 +86,7 @@ pub(super) fn label(painter: &Painter, place: Pos2, align: Align2, text: &str, f
     painter.text(place, align, text, font, colour);
 }
 
-/// Places of the columns of the readings, from the left of the view, points.
+/// Positions of the columns of the readings, from the left of the view, points.
 const COLUMN: f32 = 226.0;
 const COLUMNS_APART: f32 = 112.0;
 
@@ -95,8 +95,7 @@ pub(super) fn readings_width(live: &Live) -> f32 {
     COLUMN + COLUMNS_APART * f32::from(u8::from(live.is_bimanual())) + 20.0
 }
 
-/// The forces in large figures, one column for each hand in their order on the screen, and gauges of both with the
-/// ceiling.
+/// The forces in large figures, one column for each hand in their order on the screen, and gauges of both with the ceiling.
 pub(super) fn readings(painter: &Painter, rect: Rect, live: &Live) {
     let mut sides: Vec<Side> = live.sides().collect();
     sides.reverse();
@@ -142,7 +141,7 @@ pub(super) fn readings(painter: &Painter, rect: Rect, live: &Live) {
     label(painter, at, Align2::RIGHT_CENTER, &words, theme::regular(12.5), theme::DARK.text_weak);
 }
 
-/// A vertical gauge of measured and rendered force and the ceiling, in `rect`; a force that is not known has the sign for that.
+/// A vertical gauge of measured and rendered force and the ceiling, in `rect`; an unknown force has the sign for it.
 fn gauge(painter: &Painter, rect: Rect, forces_n: [Option<f64>; 2], ceiling_n: f64) {
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(120));
     let top_n = ceiling_n * 1.25;
@@ -175,14 +174,14 @@ pub(super) fn axes(painter: &Painter, rect: Rect, camera: &Camera) {
     }
 }
 
-/// What can be done here, or why nothing is drawn, at the bottom.
+/// Hint at the bottom: possible actions, or the reason why nothing is drawn.
 pub(super) fn hint(painter: &Painter, rect: Rect, live: &Live, view: &SceneView) {
     let (words, colour) = match &view.problem {
         Some(problem) => (text::field::not_drawn(problem), theme::DARK.text),
         None if view.lead.is_on() => {
             (text::field::lead_hover(live.scene.objects.is_some(), live.is_bimanual()), theme::DARK.text)
         }
-        // Not in a trial of a study: it would tell the mode.
+        // Not in a trial of a study: it would reveal the mode.
         None if view.arrows && training::needs_another_mode(live) => {
             (format!("{}\n{}", text::training::CHOOSE_MATCHED.get(), text::field::VIEW_HOVER.get()), theme::DARK.text)
         }

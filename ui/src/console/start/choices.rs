@@ -1,4 +1,4 @@
-//! The rigs and scenes to choose from: built-in ones, those in the user's folders, and those used last.
+//! The rigs and scenes to choose from: built-in ones, those in the user's folders, and recently used ones.
 
 use std::{
     path::Path,
@@ -26,7 +26,7 @@ impl Default for Choice {
     }
 }
 
-/// The scene with what it hides elsewhere: a trainee cannot learn the places.
+/// The scene with its hidden parts at new places, so that a trainee cannot learn them.
 pub(crate) fn drawn_anew(scene: Scene) -> Scene {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let lot = since.as_secs().wrapping_mul(1_000_003).wrapping_add(u64::from(since.subsec_nanos()));
@@ -38,7 +38,7 @@ pub(crate) fn drawn_anew(scene: Scene) -> Scene {
 const RECENT_MAX: usize = 5;
 
 impl Choice {
-    /// Another rig. The scene stays, unless it was only that of the rig before.
+    /// Selects another rig. The scene stays, unless it was specific to the previous rig.
     pub(super) fn with_rig(&self, rig: &str) -> Self {
         let default = |rig: &str| RigConfig::load(rig).map(|rig| Scene::default_for(&rig)).ok();
         let untouched = default(&self.rig) == Some(self.scene.as_str());
@@ -46,7 +46,7 @@ impl Choice {
         Self { rig: rig.to_owned(), scene }
     }
 
-    /// Puts this choice in front of those made before.
+    /// Puts this choice in front of earlier ones.
     pub(in crate::console) fn remember(&self, recent: &mut Vec<Self>) {
         recent.retain(|choice| choice != self);
         recent.insert(0, self.clone());
@@ -57,16 +57,16 @@ impl Choice {
 /// One entry of a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Entry {
-    /// Name or path: what [`Choice`] holds.
+    /// Name or path, as in [`Choice`].
     pub(super) key: String,
     pub(super) name: String,
     pub(super) about: String,
     pub(super) usable: bool,
-    /// It stands in the user's folder.
+    /// In the user's folder.
     pub(super) own: bool,
 }
 
-/// Both lists, as they were read last.
+/// Both lists, as last read.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lists {
     pub(super) rigs: Vec<Entry>,
@@ -74,7 +74,8 @@ pub(super) struct Lists {
 }
 
 impl Lists {
-    /// Reads the user's files in `folder` beside what is built in. Files of these choices are listed too, wherever they are.
+    /// Reads the user's files in `folder` in addition to the built-in ones. Files of these choices are listed too, wherever
+    /// they are.
     pub(super) fn read(folder: Option<&Path>, used: &[Choice]) -> Self {
         let rigs = keys(
             RigConfig::names().filter(|name| extras::emulates() || !is_emulated(name)),
@@ -95,7 +96,7 @@ fn is_emulated(rig: &str) -> bool {
     RigConfig::load(rig).is_ok_and(|rig| rig.devices.is_some_and(|devices| devices.emulated))
 }
 
-/// The keys of one list, with whether each is the user's own.
+/// The keys of one list, each with whether it belongs to the user.
 fn keys<'a>(
     built_in: impl Iterator<Item = &'static str>,
     folder: Option<&Path>,

@@ -1,4 +1,4 @@
-//! The endoscope of the chosen rig: its address is typed, tried at once, and written into the rig's file.
+//! The endoscope of the chosen rig: a typed address is tried at once, and written to the rig file.
 
 use std::{
     path::Path,
@@ -14,32 +14,31 @@ use nima_machine::config::{Endoscope, RigConfig, change_rig};
 use super::{answer_ui, trouble_ui};
 use crate::console::{chain, double_buffer::DoubleBuffer, eyes::wrong_told, text, widgets::small};
 
-/// An address is tried so long after the last key.
+/// Delay between the last key press and the test of an address.
 const TYPED: Duration = Duration::from_millis(500);
-/// Folder of the user's rigs within that of the user's data.
+/// Folder of the user's rigs within the user's data.
 const RIGS: &str = "rigs";
 /// The key of the address in a rig file, and its table.
 const URL: &str = "endoscope.url";
 const TABLE: &str = "endoscope";
 
-/// State of the card.
 #[derive(Default)]
 pub(super) struct EndoscopeCard {
-    /// Of the chosen rig, as its file has it.
+    /// Endoscope in the file of the chosen rig.
     of_rig: Option<Endoscope>,
     typed: String,
-    /// When the last key was pressed, if that was not tried yet.
+    /// Time of the last key press, if the address was not tried yet.
     typed_at: Option<Instant>,
     tried: Option<Tried>,
     preview: DoubleBuffer,
     number: u64,
 }
 
-/// What came of an address.
+/// Result of an address.
 enum Tried {
-    /// It is open, or is being opened.
+    /// Open, or being opened.
     Feed(Feed),
-    /// Why it cannot be used.
+    /// Reason why it cannot be used.
     Refused(String),
 }
 
@@ -50,7 +49,7 @@ impl std::fmt::Debug for EndoscopeCard {
 }
 
 impl EndoscopeCard {
-    /// Another rig is chosen, or the page is opened.
+    /// Call when another rig is chosen, or the page is opened.
     pub(super) fn choose(&mut self, rig: Option<&RigConfig>) {
         let of_rig = rig.and_then(|rig| rig.endoscope.clone());
         let typed = of_rig.as_ref().map(|endoscope| endoscope.url.clone()).unwrap_or_default();
@@ -58,14 +57,14 @@ impl EndoscopeCard {
         *self = Self { of_rig, typed, typed_at, ..Self::default() };
     }
 
-    /// Nobody looks at the page: no camera is kept open.
+    /// The page is hidden: no camera stays open.
     pub(super) fn close(&mut self) {
         self.tried = None;
         self.typed_at = None;
     }
 
-    /// Draws the card. `running` is how it stands with the picture of the rig that runs, and its address: that one is not opened twice.
-    /// Returns true when the address is to be written.
+    /// Draws the card. `running`: state and address of the running rig's endoscope, which is not opened twice. Returns true
+    /// when the address is to be written.
     pub(super) fn ui(&mut self, ui: &mut Ui, running: Option<(&str, &[String; 2])>) -> bool {
         let width = ui.available_width();
         let field = TextEdit::singleline(&mut self.typed).hint_text(text::start::ENDOSCOPE_HINT.get());
@@ -100,10 +99,10 @@ impl EndoscopeCard {
         button.on_hover_text(text::start::ENDOSCOPE_USE_HOVER.get()).clicked()
     }
 
-    /// Tries what was typed, once nobody types.
+    /// Tries the typed address after the last key press.
     fn try_it(&mut self, ctx: &Context, address: &str) {
         let Some(typed_at) = self.typed_at else {
-            // After the rig that has it has ended.
+            // After the rig that uses it has ended.
             if self.tried.is_none() {
                 self.typed_at = Some(Instant::now());
             }
@@ -146,7 +145,7 @@ impl EndoscopeCard {
         self.preview_ui(ui, &look, width);
     }
 
-    /// The picture, small.
+    /// A small preview of the image.
     fn preview_ui(&mut self, ui: &mut Ui, look: &Look<Arc<Picture>>, width: f32) {
         let Some((number, picture)) = &look.picture else { return };
         if self.preview.id().is_none() || self.number != *number {
@@ -158,8 +157,8 @@ impl EndoscopeCard {
         ui.add(egui::Image::new((texture, vec2(width, width * rows / columns))));
     }
 
-    /// Writes the address into the file of this rig, or of a copy if it is built in; without one, takes the endoscope out of it. Returns the
-    /// path of the file.
+    /// Writes the address to the file of this rig, or of a copy if it is built in; without an address, removes the endoscope.
+    /// Returns the path of the file.
     pub(super) fn write(&self, rig: &str, folder: Option<&Path>) -> Result<String, String> {
         let folder = folder.ok_or(text::start::NO_FOLDER.get())?;
         let address = self.typed.trim();
@@ -174,7 +173,7 @@ impl EndoscopeCard {
     }
 }
 
-/// What is wrong and what to do; only the first where all is well.
+/// Problem and remedy; only a state if there is no problem.
 fn outcome_ui(ui: &mut Ui, told: &str, cure: &str) {
     if cure.is_empty() {
         answer_ui(ui, true, told);
@@ -202,7 +201,7 @@ mod tests {
         let rig = RigConfig::load(&path).unwrap();
         assert_eq!(rig.endoscope, Some(Endoscope { url: url.to_owned(), ..Endoscope::default() }));
         assert_eq!(RigConfig::load("simulated").unwrap().endoscope, None, "what is built in stays");
-        // What else is known of the endoscope stays with a new address.
+        // Other settings of the endoscope stay with a new address.
         let text = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, text + "mirror = true\n").unwrap();
         assert_eq!(card(&path, "film.mjpeg").write(&path, Some(folder.path())).unwrap(), path);

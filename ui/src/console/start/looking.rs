@@ -1,4 +1,4 @@
-//! Looks for devices in the background: what is plugged in, and whether the devices of a rig answer.
+//! Searches for devices in the background: devices connected to this computer, and responses of a rig's devices.
 
 use std::{
     sync::mpsc::{Receiver, TryRecvError, channel},
@@ -11,10 +11,10 @@ use egui::Context;
 use nima_devices::discovery::{Diagnosis, Plugged, TIMEOUT, diagnose};
 use nima_machine::config::RigConfig;
 
-/// Time between two looks at what is plugged in.
+/// Interval of the search for connected devices.
 const AGAIN: Duration = Duration::from_secs(2);
 
-/// Work on a thread of its own, and its last result.
+/// Work on a separate thread, and its last result.
 #[derive(Debug)]
 pub(crate) struct Looked<T> {
     running: Option<Receiver<T>>,
@@ -28,7 +28,7 @@ impl<T> Default for Looked<T> {
 }
 
 impl<T: Send + 'static> Looked<T> {
-    /// Begins; the window is woken when there is a result. Does nothing while work is going on.
+    /// Starts the work; the window is woken when there is a result. Does nothing while work is in progress.
     pub(crate) fn begin(&mut self, ctx: &Context, work: impl FnOnce() -> T + Send + 'static) {
         if self.running.is_some() {
             return;
@@ -43,7 +43,6 @@ impl<T: Send + 'static> Looked<T> {
             thread::Builder::new().name("devices".to_owned()).spawn(language::carried(looks)).ok().map(|_| take);
     }
 
-    /// The last result.
     pub(crate) fn found(&mut self) -> Option<&T> {
         match self.running.as_ref().map(Receiver::try_recv) {
             Some(Ok(found)) => (self.running, self.found) = (None, Some(found)),
@@ -53,18 +52,17 @@ impl<T: Send + 'static> Looked<T> {
         self.found.as_ref()
     }
 
-    /// Whether work is going on.
     pub(crate) const fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
-    /// Forgets the result; one that is still to come is dropped.
+    /// Discards the result, and a result of work in progress.
     pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }
 }
 
-/// What is plugged into this computer.
+/// Devices connected to this computer.
 #[derive(Debug, Default)]
 pub(super) struct PluggedIn {
     looked: Looked<Plugged>,
@@ -72,7 +70,7 @@ pub(super) struct PluggedIn {
 }
 
 impl PluggedIn {
-    /// As of at most some seconds ago; `None` before the first result.
+    /// At most some seconds old; `None` before the first result.
     pub(super) fn now(&mut self, ctx: &Context) -> Option<&Plugged> {
         if self.at.is_none_or(|at| at.elapsed() > AGAIN) {
             self.at = Some(Instant::now());
@@ -83,11 +81,11 @@ impl PluggedIn {
     }
 }
 
-/// Whether each device of a rig answers.
+/// Responses of a rig's devices.
 pub(super) type Answers = Looked<Vec<Diagnosis>>;
 
 impl Answers {
-    /// Opens every device of the rig for a moment.
+    /// Opens every device of the rig briefly.
     pub(super) fn check(&mut self, ctx: &Context, rig: &RigConfig) {
         let probes = rig.probes();
         self.begin(ctx, move || diagnose(probes, TIMEOUT));

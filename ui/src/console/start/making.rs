@@ -1,4 +1,4 @@
-//! Makes a rig file of the user's own from another rig.
+//! Creates a user's rig file from another rig.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The start page: choose or make a rig, choose a scene, see what is plugged in and what is missing.
+//! The start page: choose or create a rig, choose a scene, see connected and missing devices.
 
 mod choices;
 mod endoscope;
@@ -31,46 +31,43 @@ use super::{
 /// Height of a button that takes a whole row.
 const ROW: f32 = 40.0;
 
-/// State of the page.
 #[derive(Debug)]
 pub struct StartPage {
-    /// Whether the page is shown.
     pub(super) is_open: bool,
-    /// The page of an extra is wanted.
+    /// The page of an extra is requested.
     pub(super) wants_page: bool,
-    /// What a newcomer sees first.
+    /// The page for newcomers.
     pub(super) welcome: Welcome,
     chosen: Choice,
     folder: Option<PathBuf>,
     lists: Lists,
-    /// The chosen rig, as long as its file is what it was when it was chosen.
+    /// The chosen rig, as long as its file is unchanged since then.
     rig: Option<RigConfig>,
     new_name: String,
     told: Option<String>,
     plugged: PluggedIn,
     answers: Answers,
     endoscope: EndoscopeCard,
-    /// The chosen rig's file may have been changed.
+    /// The chosen rig's file may have changed.
     is_stale: bool,
     picking: Option<Picking>,
 }
 
-/// What the page is drawn from.
+/// Input for drawing the page.
 pub(super) struct Now<'a> {
     pub(super) live: &'a Live,
-    /// What runs.
+    /// The running rig and scene.
     pub(super) running: &'a Choice,
     pub(super) recent: &'a [Choice],
     /// A rig is being started.
     pub(super) is_starting: bool,
-    /// How it stands with the picture of the rig that runs, and what to do.
+    /// State of the running rig's endoscope, and remedy.
     pub(super) picture: Option<[String; 2]>,
     /// Name and purpose of the page of an extra.
     pub(super) page: Option<[&'static str; 2]>,
 }
 
 impl StartPage {
-    /// The page, closed.
     pub(super) fn new(chosen: Choice) -> Self {
         Self {
             is_open: false,
@@ -90,7 +87,7 @@ impl StartPage {
         }
     }
 
-    /// Shows the page, with everything read anew; what runs is chosen.
+    /// Shows the page and reads everything again; the running rig is selected.
     pub(super) fn open(&mut self, running: &Choice, recent: &[Choice]) {
         self.is_open = true;
         self.told = None;
@@ -99,17 +96,15 @@ impl StartPage {
         self.choose(running.clone());
     }
 
-    /// Shows this below the button.
+    /// Shows this text below the button.
     pub(super) fn tell(&mut self, told: Option<String>) {
         self.told = told;
     }
 
-    /// What is shown there.
     pub(super) fn told(&self) -> Option<&str> {
         self.told.as_deref()
     }
 
-    /// Folder of the user's rigs and scenes.
     pub(super) fn set_folder(&mut self, folder: Option<&Path>) {
         self.folder = folder.map(Path::to_path_buf);
     }
@@ -130,7 +125,7 @@ impl StartPage {
         self.chosen = choice;
     }
 
-    /// Draws the page; returns the choice that is to be started.
+    /// Draws the page; returns the choice to start.
     pub(super) fn ui(&mut self, ui: &mut Ui, now: &Now<'_>) -> Option<Choice> {
         let mut start = None;
         let frame = Frame::new().inner_margin(Margin::symmetric(14, 12));
@@ -255,12 +250,12 @@ impl StartPage {
         }
     }
 
-    /// The page is not shown.
+    /// Call while the page is not shown.
     pub(super) fn rest(&mut self) {
         self.endoscope.close();
     }
 
-    /// Of the rig that runs its list of devices tells what is missing; the devices of another one are opened for a moment.
+    /// For the running rig, its list of devices shows missing ones; devices of another rig are opened briefly.
     fn missing_ui(&mut self, ui: &mut Ui, now: &Now<'_>) {
         let Some(rig) = self.rig.as_ref().filter(|rig| rig.devices.is_some() || rig.has_real_hand()) else {
             ui.label(text::start::SIMULATED.get());

@@ -1,4 +1,4 @@
-//! What a newcomer sees first: what this is, what it may not be used for, and three ways to go on. The rig that runs is seen around it.
+//! The page for newcomers: purpose, restrictions, and three ways to continue. The running rig is visible around it.
 
 use egui::{Align2, Button, Context, Label, Rect, RichText, Window, vec2};
 
@@ -8,30 +8,27 @@ use crate::console::{
     widgets::{next_button, small},
 };
 
-/// The ways from here.
+/// Ways to continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::console) enum Way {
-    /// The demonstration, which explains itself.
     Demo,
-    /// What runs.
+    /// The running rig.
     Simulated,
-    /// The start page.
     Own,
 }
 
-/// The first page; closed unless it is opened.
+/// Closed until it is opened.
 #[derive(Debug, Default)]
 pub(in crate::console) struct Welcome {
     is_open: bool,
 }
 
 impl Welcome {
-    /// Shows it from now on.
     pub(in crate::console) const fn open(&mut self) {
         self.is_open = true;
     }
 
-    /// Draws it into `room`, which leaves the stop free; returns the way that was chosen, and is closed then.
+    /// Draws it into `room`, which does not cover the stop button; returns the chosen way and closes.
     pub(in crate::console) fn ui(&mut self, ctx: &Context, room: Rect) -> Option<Way> {
         if !self.is_open {
             return None;

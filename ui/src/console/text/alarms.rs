@@ -1,4 +1,4 @@
-//! Alarms: cause and cure of each, the alarm strip, and the list of recent alarms.
+//! Alarms: their causes and remedies, the alarm strip, and the list of recent alarms.
 
 use crate::language::{Text, told};
 
@@ -52,36 +52,31 @@ pub(in crate::console) const NOW: Text = Text::of("now", "jetzt");
 pub(in crate::console) const ENDED: Text = Text::of("ended", "beendet");
 pub(in crate::console) const PRESENT: Text = Text::of("still present", "besteht noch");
 pub(in crate::console) const DEVICE_MISSING_CURE: Text = Text::of(
-    "It is opened again automatically; check its cable and its power",
-    "Es wird automatisch wieder geöffnet; Kabel und Stromversorgung prüfen",
+    "The console reconnects it automatically; check its cable and its power",
+    "Die Konsole verbindet es von selbst wieder; Kabel und Stromversorgung prüfen",
 );
 
-/// A fault and the time of its first report, s on the loop's clock.
+/// Fault with the time of its first report, s on the loop's clock.
 pub(in crate::console) fn fault(cause: &str, t_s: f64) -> String {
     told!("{cause} (at {t_s:.1} s)", "{cause} (bei {t_s:.1} s)")
 }
 
-/// A device that is missing.
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {
     told!("The {name} is missing: {cause}", "{name} fehlt: {cause}")
 }
 
-/// A device that is connected but no longer delivers.
 pub(in crate::console) fn device_lost(name: &str, cause: &str) -> String {
     told!("The {name} is lost: {cause}", "{name} ausgefallen: {cause}")
 }
 
-/// A fault of a device.
 pub(in crate::console) fn fault_of(name: &str, cause: &str) -> String {
     format!("{cause} ({name})")
 }
 
-/// The loop misses too many deadlines.
 pub(in crate::console) fn periods_missed(percent: f64) -> String {
     told!("The control loop misses {percent:.1} % of its periods", "Die Regelung versäumt {percent:.1} % ihrer Takte")
 }
 
-/// The bias of the wrist sensor has changed since the calibration.
 pub(in crate::console) fn bias_moved(by_n: f64) -> String {
     told!(
         "The wrist sensor reads {by_n:.2} N without contact: its bias has drifted since the calibration",
@@ -89,29 +84,26 @@ pub(in crate::console) fn bias_moved(by_n: f64) -> String {
     )
 }
 
-/// No program for playing sounds is installed.
 pub(in crate::console) fn no_player(players: &str) -> String {
     told!(
-        "No alarm sound: none of these players is installed: {players}",
-        "Kein Alarmton: keines dieser Abspielprogramme ist installiert: {players}"
+        "No alarm sound: none of these players is installed: {players}; install one",
+        "Kein Alarmton: keines dieser Abspielprogramme ist installiert: {players}; eines installieren"
     )
 }
 
 pub(in crate::console) const UNCHECKED_CAUSE: Text = Text::of(
-    "No ready check of the last 12 hours has passed with these devices",
+    "No ready check has passed with these devices in the last 12 hours",
     "Keine bestandene Startprüfung mit diesen Geräten in den letzten 12 Stunden",
 );
 pub(in crate::console) const UNCHECKED_CURE: Text = Text::of(
-    "Press Ready check in the panel Calibration before you engage",
+    "Press Ready check in the Calibration panel before you engage",
     "Vor dem Koppeln im Panel Kalibrierung Startprüfung drücken",
 );
 
-/// The program for playing sounds failed.
 pub(in crate::console) fn player_failed(status: &impl std::fmt::Display) -> String {
     told!("The alarm sound could not be played ({status})", "Alarmton nicht abspielbar ({status})")
 }
 
-/// The program for playing sounds could not be started.
 pub(in crate::console) fn player_not_started(error: &impl std::fmt::Display) -> String {
     told!("The alarm sound could not be played: {error}", "Alarmton nicht abspielbar: {error}")
 }
@@ -121,12 +113,10 @@ pub(in crate::console) fn pinned(priority: &str, cause: &str, began_utc: &str, r
     told!("{priority}: {cause}, since {began_utc} UTC{remarks}", "{priority}: {cause}, seit {began_utc} UTC{remarks}")
 }
 
-/// Remark: number of further alarms.
 pub(in crate::console) fn others(count: usize) -> String {
     told!(" (+{count} more)", " (+{count} weitere)")
 }
 
-/// An entry of the list of recent alarms.
 pub(in crate::console) fn entry(began: &str, until: &str, priority: &str, standing: &str) -> String {
     told!("{began} to {until}: {priority}, {standing}", "{began} bis {until}: {priority}, {standing}")
 }

@@ -1,4 +1,4 @@
-//! The calibration panel: what is calibrated, how well, and the buttons that open the wizards.
+//! The Calibration panel: state and errors of the calibrations, and the buttons that open the wizards.
 
 use nima_machine::messages::LoopState;
 use nima_recording::store::WristId;
@@ -6,7 +6,7 @@ use nima_recording::store::WristId;
 use crate::language::{Text, told, word};
 
 pub(in crate::console) const NOT_OF_A_SENSOR: Text =
-    Text::of("these numbers belong into the rig file", "diese Werte gehören in die Aufbaudatei");
+    Text::of("these values belong in the rig file", "diese Werte gehören in die Aufbaudatei");
 pub(in crate::console) const SETS_IDLE: Text = Text::of(
     "The check and the wizards set the loop to idle",
     "Prüfung und Assistenten setzen die Regelung in den \
@@ -44,11 +44,11 @@ pub(in crate::console) const REMARK_FUTURE_DATE: Text = Text::of(
     "; Datum in der Zukunft, Uhr dieses Rechners prüfen",
 );
 pub(in crate::console) const SENSOR_NOT_CONNECTED: Text = Text::of(
-    "The wrist sensor is not connected: its serial number decides which calibrations are in force",
+    "The wrist sensor is not connected: its serial number decides which calibrations are used",
     "Handgelenksensor nicht verbunden: seine Seriennummer bestimmt, welche Kalibrierungen gelten",
 );
 pub(in crate::console) const SENSOR_WITHOUT_SERIAL: Text = Text::of(
-    "The wrist sensor gave no serial number, so no calibration can belong to it: connect it again",
+    "The wrist sensor reports no serial number, so no calibration can be assigned to it: reconnect it",
     "Der Handgelenksensor nennt keine Seriennummer, ihm ist keine Kalibrierung zuzuordnen: neu verbinden",
 );
 pub(in crate::console) const RIG_WITHOUT_SENSOR: Text = Text::of(
@@ -56,7 +56,7 @@ pub(in crate::console) const RIG_WITHOUT_SENSOR: Text = Text::of(
     "Die Aufbaudatei nennt keinen Handgelenksensor für diesen Arm: serial_number und tool in [simulated] ergänzen",
 );
 pub(in crate::console) const NO_SENSOR_TO_SAVE_FOR: Text = Text::of(
-    "the serial number of the wrist sensor is not known; save again once the sensor is connected",
+    "the serial number of the wrist sensor is unknown; connect the sensor, then save again",
     "Seriennummer des Handgelenksensors unbekannt; Sensor verbinden, dann erneut speichern",
 );
 pub(in crate::console) const ARM_TO_CALIBRATE: Text = Text::of(
@@ -64,7 +64,7 @@ pub(in crate::console) const ARM_TO_CALIBRATE: Text = Text::of(
     "Die Assistenten kalibrieren den Handgelenksensor dieses Arms",
 );
 
-/// Why nothing that sets the loop to idle can be opened in this state, and what to do; `None` where it can.
+/// Reason why no wizard, which sets the loop to idle, can be opened in this state, with the remedy; `None` if one can.
 pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
     match state {
         LoopState::Idle | LoopState::Engaged => None,
@@ -72,15 +72,14 @@ pub(crate) fn closed(state: LoopState) -> Option<&'static str> {
             Some(word("The loop is stopped: press Release stop", "Die Regelung ist angehalten: Halt lösen drücken"))
         }
         LoopState::Disconnected => {
-            Some(word("A device is missing: see the panel Devices", "Ein Gerät fehlt: siehe Panel Geräte"))
+            Some(word("A device is missing: see the Devices panel", "Ein Gerät fehlt: siehe Panel Geräte"))
         }
         LoopState::Ready => Some(word(
-            "About to engage: align hand and tip, or Stop",
-            "Vor dem Koppeln: Hand und Spitze ausrichten, \
-             oder Halt",
+            "About to engage: align hand and tip, or press Stop",
+            "Vor dem Koppeln: Hand und Spitze ausrichten, oder Halt drücken",
         )),
         LoopState::Clutched => {
-            Some(word("The clutch is pressed: let the pedal go", "Kupplung gedrückt: Pedal loslassen"))
+            Some(word("The clutch is pressed: release the pedal", "Kupplung gedrückt: Pedal loslassen"))
         }
     }
 }
@@ -90,28 +89,23 @@ pub(in crate::console) fn calibrate(wizard: &str) -> String {
     told!("Calibrate {wizard}…", "{wizard} kalibrieren…")
 }
 
-/// Hover text of that button.
 pub(in crate::console) fn opens(meaning: &str) -> String {
     told!("{meaning}\nThe loop is set to idle", "{meaning}\nDie Regelung geht in den Leerlauf")
 }
 
-/// Source of the force at the tip.
 pub(in crate::console) fn source(words: &str) -> String {
     told!("Tip force: {words}", "Kraft an der Spitze: {words}")
 }
 
-/// Name of an arm.
 pub(in crate::console) fn arm(side: &str) -> String {
     let after = side.to_lowercase();
     told!("{side} arm", "Arm {after}")
 }
 
-/// Sensor and tool of the calibrations.
 pub(in crate::console) fn bound_to(sensor: &str, tool: &str) -> String {
     told!("Sensor {sensor}, {tool}", "Sensor {sensor}, {tool}")
 }
 
-/// This sensor has no gravity calibration, but others have one with the same tool.
 pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str, others: &str) -> String {
     told!(
         "Sensor {sensor} has no gravity calibration with {tool}; sensor {others} has one: connect that sensor, or \
@@ -121,11 +115,10 @@ pub(in crate::console) fn other_sensors_are_calibrated(sensor: &str, tool: &str,
     )
 }
 
-/// Each sensor is calibrated with the tool of the other arm.
 pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId) -> String {
     told!(
-        "The right and the left sensor, or their tools in the rig file, are exchanged: {} is calibrated with {}, and \
-         {} with {}: exchange the cables, or press Exchange Sensors in the panel Devices.",
+        "The right and left sensors, or their tools in the rig file, are swapped: {} is calibrated with {}, and \
+         {} with {}. Swap the cables, or press Swap sensors in the Devices panel.",
         "Rechter und linker Sensor oder ihre Instrumente in der Aufbaudatei sind vertauscht: {} ist mit {} kalibriert \
          und {} mit {}: Kabel tauschen, oder im Panel Geräte Sensoren tauschen.",
         right.serial_number,
@@ -135,7 +128,6 @@ pub(in crate::console) fn sensors_are_exchanged(right: &WristId, left: &WristId)
     )
 }
 
-/// A file that cannot be used.
 pub(in crate::console) fn not_in_force(what: &str, why: &str) -> String {
     told!(
         "{what}: the saved calibration is not used: {why}",
@@ -144,12 +136,10 @@ pub(in crate::console) fn not_in_force(what: &str, why: &str) -> String {
     )
 }
 
-/// A calibration was saved to this file.
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     told!("Saved and in use: {}", "Gespeichert, aktiv: {}", path.display())
 }
 
-/// The gravity calibration in one line.
 pub(in crate::console) fn gravity(day: &str, poses: usize, error_n: f64, remarks: &str) -> String {
     told!(
         "Gravity: {day}, {poses} poses, held-out error {error_n:.3} N{remarks}",
@@ -157,17 +147,14 @@ pub(in crate::console) fn gravity(day: &str, poses: usize, error_n: f64, remarks
     )
 }
 
-/// Result of the check of the bias.
 pub(in crate::console) fn bias_checked(found_at: &str, words: &str) -> String {
     told!("Bias, checked at {found_at} UTC: {words}", "Nullpunkt, geprüft um {found_at} UTC: {words}")
 }
 
-/// State of the bias before its check has finished.
 pub(in crate::console) fn bias(words: &str) -> String {
     told!("Bias: {words}", "Nullpunkt: {words}")
 }
 
-/// The correspondence in one line.
 pub(in crate::console) fn correspondence(
     day: &str,
     pairs: usize,
@@ -183,7 +170,6 @@ pub(in crate::console) fn correspondence(
     )
 }
 
-/// The tip-force network in one line.
 pub(in crate::console) fn tip_force(day: &str, rows: usize, error_n: f64, remarks: &str) -> String {
     told!(
         "Tip force: {day}, {rows} rows, error on new data {error_n:.3} N{remarks}",
@@ -191,37 +177,30 @@ pub(in crate::console) fn tip_force(day: &str, rows: usize, error_n: f64, remark
     )
 }
 
-/// Remark: the calibration is old.
 pub(in crate::console) fn days_old(days: u64) -> String {
     told!("; {days} days old, calibrate again", "; {days} Tage alt, neu kalibrieren")
 }
 
-/// Remark: its verdict was overridden by this person.
 pub(in crate::console) fn not_proven(name: &str) -> String {
-    told!("; NOT PROVEN, kept by {name}", "; NICHT BELEGT, übernommen von {name}")
+    told!("; NOT PROVEN, accepted by {name}", "; NICHT BELEGT, übernommen von {name}")
 }
 
-/// A wizard could not be opened.
 pub(in crate::console) fn not_opened(reason: &str) -> String {
     told!("Not opened: {reason}", "Nicht geöffnet: {reason}")
 }
 
-/// The previous scene could not be restored after a wizard.
 pub(in crate::console) fn still_in_the_experiment(reason: &str) -> String {
     told!("Could not return to the monitor: {reason}", "Rückkehr zum Monitor nicht möglich: {reason}")
 }
 
-/// Saved, but the running loop does not use it yet.
 pub(in crate::console) fn in_force_with_next_start(saved: &str, reason: &str) -> String {
-    told!("{saved}. It is used from the next start on: {reason}", "{saved}. Gilt ab dem nächsten Start: {reason}")
+    told!("{saved}. It will be used after the next start: {reason}", "{saved}. Gilt ab dem nächsten Start: {reason}")
 }
 
-/// Could not be saved.
 pub(in crate::console) fn not_saved(reason: &str) -> String {
     told!("Not saved: {reason}", "Nicht gespeichert: {reason}")
 }
 
-/// The loop has ended and could not be restarted.
 pub(in crate::console) fn not_started_again(error: &impl std::fmt::Display) -> String {
     told!("the control loop could not be restarted: {error}", "die Regelung ließ sich nicht neu starten: {error}")
 }

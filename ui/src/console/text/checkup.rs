@@ -1,51 +1,50 @@
-//! The test of a device: figures.
+//! Measurements of the device test.
 
 use crate::language::{Text, told};
 
 pub(in crate::console) const RATE: Text = Text::of("Rate", "Rate");
 pub(in crate::console) const RATE_HOVER: Text =
-    Text::of("Readings per second, and how many there should be", "Messwerte pro Sekunde, Ist und Soll");
+    Text::of("Readings per second, measured and expected", "Messwerte pro Sekunde, Ist und Soll");
 pub(in crate::console) const AGE: Text = Text::of("Age", "Alter");
 pub(in crate::console) const AGE_HOVER: Text = Text::of(
-    "How old the newest reading was in a tick of the loop: in half of the ticks at most, and in 99 of 100 at most",
-    "Alter des neuesten Messwerts in einem Takt der Regelung: Obergrenze in der Hälfte und in 99 von 100 der Takte",
+    "Age of the newest reading in a tick of the loop: median and 99th percentile",
+    "Alter des neuesten Messwerts in einem Takt der Regelung: Median und 99. Perzentil",
 );
 pub(in crate::console) const LOSSES: Text = Text::of("Lost, damaged, refused", "Verloren, beschädigt, abgelehnt");
 pub(in crate::console) const LOSSES_HOVER: Text = Text::of(
-    "Lost: missing by the device's own count. Damaged: checksum or structure. Refused: status or impossible numbers.",
-    "Verloren: fehlt nach der Zählung des Geräts. Beschädigt: Prüfsumme oder Struktur. Abgelehnt: Status oder \
-     unmögliche Werte.",
+    "Lost: missing in the device's own count. Damaged: wrong checksum or structure. Refused: error status or \
+     impossible values.",
+    "Verloren: fehlt nach der Zählung des Geräts. Beschädigt: falsche Prüfsumme oder Struktur. Abgelehnt: \
+     Fehlerstatus oder unmögliche Werte.",
 );
 pub(in crate::console) const NOISE_HOVER: Text = Text::of(
-    "Standard deviation of each number (x, y, z or joint by joint) within tenths of a second, so that slow motion does \
-     not count",
-    "Standardabweichung jedes Werts (x, y, z oder je Gelenk) innerhalb von Zehntelsekunden, damit langsame Bewegung \
-     nicht zählt",
+    "Standard deviation of each value (x, y, z, or per joint) within 0.1 s, so that slow motion does not count",
+    "Standardabweichung jedes Werts (x, y, z oder je Gelenk) innerhalb von 0.1 s, damit langsame Bewegung nicht \
+     zählt",
 );
 pub(in crate::console) const SPAN_HOVER: Text = Text::of(
-    "Lowest and highest reading of each number (x, y, z or joint by joint), and of the device's range the share from \
-     its middle that was reached, where the range is known",
-    "Kleinster und größter Messwert (x, y, z oder je Gelenk) und, wo der Gerätebereich bekannt ist, der ab dessen \
-     Mitte erreichte Anteil",
+    "Lowest and highest reading of each value (x, y, z, or per joint). Where the device's range is known, also \
+     the part of it that was reached, from the middle.",
+    "Kleinster und größter Messwert (x, y, z oder je Gelenk). Wo der Gerätebereich bekannt ist, auch der ab \
+     dessen Mitte erreichte Anteil.",
 );
 pub(in crate::console) const UP: Text = Text::of("Up", "Oben");
 pub(in crate::console) const UP_HOVER: Text = Text::of(
-    "Where the accelerometer sees up, in the sensor's own axes, and the size of gravity; 9.81 m/s\u{b2} at rest",
-    "Wo der Beschleunigungssensor oben sieht, in Sensorachsen, und Betrag der Schwerkraft; in Ruhe 9.81 m/s\u{b2}",
+    "Direction that the accelerometer measures as up, in the sensor's axes, and the magnitude of gravity; 9.81 \
+     m/s\u{b2} at rest",
+    "Richtung, die der Beschleunigungssensor als oben misst, in Sensorachsen, und Betrag der Schwerkraft; in \
+     Ruhe 9.81 m/s\u{b2}",
 );
 pub(in crate::console) const NO_AGE: Text = Text::of("no reading yet", "noch kein Messwert");
 
-/// Noise of some numbers of a reading.
 pub(in crate::console) fn noise_of(name: &str) -> String {
     told!("Noise of {name}", "Rauschen: {name}")
 }
 
-/// Range of some numbers of a reading.
 pub(in crate::console) fn span_of(name: &str) -> String {
     told!("Range of {name}", "Bereich: {name}")
 }
 
-/// Rate against the nominal one.
 pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     match nominal_hz {
         Some(nominal_hz) => told!("{hz:.0} of {nominal_hz:.0} Hz", "{hz:.0} von {nominal_hz:.0} Hz"),
@@ -53,17 +52,15 @@ pub(in crate::console) fn rate(hz: f64, nominal_hz: Option<f64>) -> String {
     }
 }
 
-/// Ages, s.
+/// Median and 99th percentile of the ages, s.
 pub(in crate::console) fn age([p50_s, p99_s]: [f64; 2]) -> String {
     told!("p50 {:.0} ms, p99 {:.0} ms", "p50 {:.0} ms, p99 {:.0} ms", p50_s * 1e3, p99_s * 1e3)
 }
 
-/// Losses.
 pub(in crate::console) fn losses(lost: u64, damaged: u64, refused: u64) -> String {
     format!("{lost}, {damaged}, {refused}")
 }
 
-/// Upwards, as an axis, and the size of gravity.
 pub(in crate::console) fn up(axis: &str, off_deg: f64, size_m_s2: f64) -> String {
     told!(
         "{axis}, {off_deg:.0}\u{b0} off; {size_m_s2:.2} m/s\u{b2}",
@@ -71,7 +68,6 @@ pub(in crate::console) fn up(axis: &str, off_deg: f64, size_m_s2: f64) -> String
     )
 }
 
-/// Reached share of a range.
 pub(in crate::console) fn share(percent: f64) -> String {
     told!("{percent:.0} % of its range", "{percent:.0} % des Bereichs")
 }

@@ -47,11 +47,12 @@ pub(in crate::console) const OPTION_FLIP: Text = Text::of(
     "Der Sensor unter dem Gewebe meldet die Kraft auf das Gewebe, nicht die auf das Instrument",
 );
 pub(in crate::console) const OPTION_FLIP_HOVER: Text = Text::of(
-    "A scale does this: the two sensors then report opposite forces. Pushes already recorded are kept.",
-    "So eine Waage: die Sensoren melden dann entgegengesetzte Kräfte. Aufgezeichnetes bleibt erhalten.",
+    "Needed for a scale, for example: the two sensors then report opposite forces. Recorded pushes are kept.",
+    "Nötig etwa bei einer Waage: die Sensoren melden dann entgegengesetzte Kräfte. Aufgezeichnetes bleibt \
+     erhalten.",
 );
 pub(in crate::console) const OPTION_NO_TRACKER: Text = Text::of(
-    "No tracker: the wrist keeps its orientation during all pushes",
+    "No tracker: the wrist keeps the same orientation during all pushes",
     "Kein Tracker: das Handgelenk behält beim Drücken stets seine Orientierung",
 );
 pub(in crate::console) const OPTION_NO_TRACKER_HOVER: Text = Text::of(
@@ -60,7 +61,7 @@ pub(in crate::console) const OPTION_NO_TRACKER_HOVER: Text = Text::of(
 );
 pub(in crate::console) const PUSH_TITLE: Text = Text::of("Push in this direction", "In diese Richtung drücken");
 pub(in crate::console) const PUSH_HOVER: Text = Text::of(
-    "Push the tissue, hold for half a second, then let go. The push is recorded when you let go.",
+    "Push the tissue, hold for half a second, then release. The push is recorded when you release.",
     "Auf das Gewebe drücken, eine halbe Sekunde halten, dann loslassen. Beim Loslassen wird aufgezeichnet.",
 );
 pub(in crate::console) const PHASE_WRIST_SILENT: Text =
@@ -79,16 +80,15 @@ pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last push"
 pub(in crate::console) const NO_RESULT_HOVER: Text =
     Text::of("No rotation could be fitted to the pushes", "Keine Drehung ließ sich anpassen");
 pub(in crate::console) const TOO_FEW: Text =
-    Text::of("There are too few pushes: go back and record more", "Zu wenige: zurückgehen und öfter drücken");
-pub(in crate::console) const PROOF: Text =
-    Text::of("Accepted on pushes that were held out", "Auf Testdaten angenommen");
+    Text::of("Too few pushes: go back and record more", "Zu wenige: zurückgehen und öfter drücken");
+pub(in crate::console) const PROOF: Text = Text::of("Accepted on held-out pushes", "Auf Testdaten angenommen");
 pub(in crate::console) const PHASE_READY: Text = Text::of("ready; push now", "bereit; jetzt drücken");
 pub(in crate::console) const VERDICT_HOVER: Text = Text::of(
     "Tested on pushes that were not used to fit the rotation",
     "Getestet an Drücken, die nicht in den Fit eingingen",
 );
 pub(in crate::console) const PUSHES_HOVER: Text = Text::of(
-    "Number of pushes recorded, and how many of them were not used",
+    "Number of recorded pushes, and how many of them were not used",
     "Zahl der aufgezeichneten Drücke, davon nicht verwendet",
 );
 pub(in crate::console) const SPREAD: Text = Text::of("Spread", "Streuung");
@@ -105,7 +105,7 @@ pub(in crate::console) const UNCERTAINTY_HOVER: Text =
     Text::of("Expected error of the rotation, as an angle", "Erwarteter Fehler der Drehung, als Winkel");
 pub(in crate::console) const CROSS_CHECK: Text = Text::of("Euler cross-check", "Euler-Gegenprobe");
 pub(in crate::console) const CROSS_CHECK_HOVER: Text = Text::of(
-    "Angle between this rotation and the one that the paper's search over Euler angles finds",
+    "Angle between this rotation and the result of the paper's search over Euler angles",
     "Winkel zwischen dieser Drehung und der aus der Euler-Winkel-Suche des Artikels",
 );
 pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
@@ -133,21 +133,18 @@ pub(in crate::console) const FITTED_MAE: Text = Text::of("fitted: MAE", "Fit: MA
 pub(in crate::console) const HELD_OUT_MAE: Text = Text::of("held out: MAE", "Test: MAE");
 pub(in crate::console) const R2_OVERALL: Text = Text::of("R2 of all axes", "R2 aller Achsen");
 pub(in crate::console) const R2_OVERALL_HOVER: Text = Text::of(
-    "Share of the variance that the fit explains; the paper reports 0.95",
+    "Fraction of the variance that the fit explains; the paper reports 0.95",
     "Vom Fit erklärter Anteil der Varianz; der Artikel nennt 0.95",
 );
 
-/// Number of recorded pushes.
 pub(in crate::console) fn taken_of(count: usize, asked: usize) -> String {
-    told!("{count} recorded of {asked} or more", "{count} aufgezeichnet von {asked} oder mehr")
+    told!("{count} recorded, at least {asked} needed", "{count} aufgezeichnet, mindestens {asked} nötig")
 }
 
-/// Number of recorded pushes, as a figure.
 pub(in crate::console) fn pushes(count: usize) -> String {
     told!("{count} pushes", "{count}-mal gedrückt")
 }
 
-/// Readings of the sensors at rest.
 pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
     told!(
         "wrist {wrist_n:.2} N, tissue {tissue_n:.2} N; touch nothing; if a sensor stays above 0.3 N, set it to zero",
@@ -156,27 +153,22 @@ pub(in crate::console) fn at_rest(wrist_n: f64, tissue_n: f64) -> String {
     )
 }
 
-/// During a push: keep holding.
 pub(in crate::console) fn hold(force_n: f64) -> String {
     told!("{force_n:.1} N; hold still", "{force_n:.1} N; stillhalten")
 }
 
-/// During a push: it may end now.
 pub(in crate::console) fn let_go(force_n: f64) -> String {
-    told!("{force_n:.1} N; enough, let go", "{force_n:.1} N; genug, loslassen")
+    told!("{force_n:.1} N; enough, release", "{force_n:.1} N; genug, loslassen")
 }
 
-/// A push was recorded.
 pub(in crate::console) fn push_taken(number: usize) -> String {
     told!("push {number} recorded", "Druck {number} aufgezeichnet")
 }
 
-/// A push was not recorded.
 pub(in crate::console) fn not_taken(why: &str) -> String {
     told!("not recorded: {why}", "nicht aufgezeichnet: {why}")
 }
 
-/// Number of pushes used in the fit, and of those left out.
 pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> String {
     told!(
         "{pairs}; not used: {left_out} contradictory, {weak} too weak",
@@ -184,12 +176,10 @@ pub(in crate::console) fn used(pairs: usize, left_out: usize, weak: usize) -> St
     )
 }
 
-/// Names of the two frames.
 pub(in crate::console) fn rotation(name: &str) -> String {
     told!("Rotation {name}", "Drehung {name}")
 }
 
-/// Coefficient of determination over all axes.
 pub(in crate::console) fn agreement(fitted: f64, held_out: f64) -> String {
     told!("{fitted:.3} fitted, {held_out:.3} held out", "Fit {fitted:.3}, Test {held_out:.3}")
 }

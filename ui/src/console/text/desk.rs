@@ -10,7 +10,7 @@ pub(in crate::console) const DEVICES: Text = Text::of("Devices", "Geräte");
 pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Kalibrierung");
 pub(in crate::console) const WHY_NO_FORCE: Text = Text::of("Why no force?", "Warum keine Kraft?");
 pub(in crate::console) const SAFETY: Text = Text::of("Safety", "Sicherheit");
-pub(in crate::console) const ERROR_AT_THE_HORIZON: Text = Text::of("Error at the horizon", "Horizont");
+pub(in crate::console) const ERROR_AT_THE_HORIZON: Text = Text::of("Prediction error", "Vorhersagefehler");
 pub(in crate::console) const DEGREES: Text = Text::of("Degrees", "Grade");
 pub(in crate::console) const TIMING: Text = Text::of("Timing", "Timing");
 pub(in crate::console) const LINK: Text = Text::of("Link", "Verbindung");
@@ -48,24 +48,27 @@ pub(in crate::console) const SAFETY_HOVER: Text = Text::of(
     "Sicherheitsfunktionen zwischen Modell und Hand: Verriegelung und Sperren jedes Arms",
 );
 pub(in crate::console) const ERROR_AT_THE_HORIZON_HOVER: Text = Text::of(
-    "Difference between the force that each mode would render now, before the gates, and the force \
-    measured now (N, 3-D distance, mean of the last four seconds). Each mode only knows data as old as \
-    the link's delay. All modes are computed all the time.",
-    "Differenz zwischen der Kraft, die jeder Modus jetzt vor den Sperren darstellen würde, und der jetzt gemessenen \
-     (N, 3-D-Abstand, Mittel der letzten vier Sekunden). Jeder Modus kennt nur Daten, die so alt sind wie die \
-     Verzögerung der Verbindung. Alle Modi werden ständig berechnet.",
+    "Difference between the force that each mode would render now, before the gates, and the force measured now \
+     (N, 3-D distance, mean of the last four seconds). Each mode receives only data as old as the link's delay. \
+     All modes are always computed.",
+    "Differenz zwischen der Kraft, die jeder Modus jetzt vor den Sperren darstellen würde, und der jetzt \
+     gemessenen (N, 3-D-Abstand, Mittel der letzten vier Sekunden). Jeder Modus erhält nur Daten, die so alt \
+     sind wie die Verzögerung der Verbindung. Alle Modi werden ständig berechnet.",
 );
 pub(in crate::console) const DEGREES_HOVER: Text = Text::of(
     "Degree N of the polynomial f = M X between motion and force, chosen every tick from the last 300 ms",
     "Grad N des Polynoms f = M X zwischen Bewegung und Kraft, in jedem Takt aus den letzten 300 ms gewählt",
 );
 pub(in crate::console) const TIMING_HOVER: Text = Text::of(
-    "How late the control loop wakes for each period, and how long it works in it, since the console opened (µs)",
-    "Wie spät die Regelung in jedem Takt aufwacht und wie lange sie darin arbeitet, seit Öffnen der Konsole (µs)",
+    "How late the control loop wakes up in each period, and how long it computes, since the console was opened \
+     (µs)",
+    "Wie spät die Regelung in jedem Takt aufwacht und wie lange sie rechnet, seit Öffnen der Konsole (µs)",
 );
 pub(in crate::console) const LINK_HOVER: Text = Text::of(
-    "The network between this machine and the one with the arm: delay, loss, clock, and who holds the follower",
-    "Netzwerk zwischen diesem Rechner und dem des Arms: Verzögerung, Verlust, Uhr, und wer den Folgearm führt",
+    "The network between this machine and the machine with the arm: delay, loss, clock, and which console \
+     controls the follower",
+    "Netzwerk zwischen diesem Rechner und dem des Arms: Verzögerung, Verlust, Uhr, und welche Konsole den \
+     Folgearm steuert",
 );
 pub(in crate::console) const TRADE_OFF_HOVER: Text = Text::of(
     "Computing time of one tick of identification (µs, on this computer) against the mean prediction \
@@ -90,5 +93,5 @@ pub(in crate::console) fn close(panel: &str) -> String {
 
 /// Hover text of that button; `close` from [`close`].
 pub(in crate::console) fn close_meaning(close: &str) -> String {
-    told!("{close}; the View menu opens it again.", "{close}; das Menü Ansicht öffnet es wieder.")
+    told!("{close}; the View menu reopens it.", "{close}; das Menü Ansicht öffnet es wieder.")
 }

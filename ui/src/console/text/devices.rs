@@ -1,4 +1,4 @@
-//! The panel of devices: connection, which one is which, their choice, their test.
+//! The Devices panel: connection, identification, choice and test of devices.
 
 use nima_machine::rig::{Part, PartKind};
 
@@ -10,7 +10,7 @@ use crate::words::{part_name, within};
 pub(in crate::console) const NONE: Text =
     Text::of("This rig is simulated: it has no devices", "Dieser Aufbau ist simuliert: er hat keine Geräte");
 pub(in crate::console) const NONE_TO_CONNECT: Text = Text::of(
-    "To connect devices, press Rig (F6), make a copy of the paper rig and start it",
+    "To connect devices, press Rig (F6), copy the paper rig and start the copy",
     "Um Geräte zu verbinden: Aufbau (F6) drücken, Kopie des Aufbaus paper anlegen und starten",
 );
 pub(in crate::console) const DISCONNECT: Text = Text::of("Disconnect", "Trennen");
@@ -21,7 +21,7 @@ pub(in crate::console) const CONNECT_HOVER: Text = Text::of(
 );
 pub(in crate::console) const CLEAR_FAULTS: Text = Text::of("Clear faults", "Störungen zurücksetzen");
 pub(in crate::console) const CLEAR_FAULTS_HOVER: Text = Text::of(
-    "Make sure that nobody is near the arm and the cause is gone: afterwards the arm may move again",
+    "First make sure that no one is near the arm and that the cause is gone: afterwards the arm can move again",
     "Sicherstellen, dass niemand am Arm und die Ursache behoben ist: danach kann sich der Arm wieder bewegen",
 );
 pub(in crate::console) const OPENING: Text = Text::of("connecting", "wird verbunden");
@@ -29,50 +29,51 @@ pub(in crate::console) const DISCONNECTED: Text = Text::of("disconnected", "getr
 
 pub(in crate::console) const TEST: Text = Text::of("Test", "Testen");
 pub(in crate::console) const TEST_HOVER: Text = Text::of(
-    "Measures for two seconds: rate, noise, range, age of the readings, losses. Let the device rest meanwhile.",
+    "Measures rate, noise, range, age of the readings and losses for two seconds. Keep the device at rest \
+     meanwhile.",
     "Misst zwei Sekunden lang: Rate, Rauschen, Bereich, Alter der Messwerte, Verluste. Das Gerät dabei ruhen lassen.",
 );
 pub(in crate::console) const TEST_ALL: Text = Text::of("Test all", "Alle testen");
-pub(in crate::console) const TESTING: Text = Text::of("testing: let it rest", "Test läuft: ruhen lassen");
+pub(in crate::console) const TESTING: Text = Text::of("testing: keep it at rest", "Test läuft: ruhen lassen");
 pub(in crate::console) const TEST_BROKEN_OFF: Text =
-    Text::of("The test got no data: the loop does not run", "Test ohne Daten: die Regelung läuft nicht");
-pub(in crate::console) const FINE: Text = Text::of("Tested: fine", "Getestet: OK");
-pub(in crate::console) const LOOK_AT: Text = Text::of("Tested: look at", "Getestet: prüfen");
+    Text::of("The test received no data: the loop is not running", "Test ohne Daten: die Regelung läuft nicht");
+pub(in crate::console) const FINE: Text = Text::of("Test passed", "Test bestanden");
+pub(in crate::console) const LOOK_AT: Text = Text::of("Test found a problem", "Test fand ein Problem");
 pub(in crate::console) const CHOOSE: Text = Text::of("Choose", "Wählen");
 pub(in crate::console) const CHOOSE_HOVER: Text = Text::of(
-    "Use another device here, told apart by its serial number",
-    "Hier ein anderes Gerät verwenden, anhand der Seriennummer",
+    "Use another device here, identified by its serial number",
+    "Hier ein anderes Gerät verwenden, erkannt an der Seriennummer",
 );
-pub(in crate::console) const LOOK: Text = Text::of("Look for others", "Andere suchen");
+pub(in crate::console) const LOOK: Text = Text::of("Search for others", "Andere suchen");
 pub(in crate::console) const LOOK_HOVER: Text = Text::of(
-    "Asks every free port and USB device of this kind who it is; takes about a second",
+    "Queries every free port and USB device of this kind; takes about a second",
     "Fragt jeden freien Port und jedes USB-Gerät dieser Art nach seiner Kennung; dauert etwa eine Sekunde",
 );
-pub(in crate::console) const LOOKING: Text = Text::of("looking", "sucht");
+pub(in crate::console) const LOOKING: Text = Text::of("searching", "sucht");
 pub(in crate::console) const PLACE: Text = Text::of("Address or port", "Adresse oder Port");
 pub(in crate::console) const PLACE_HOVER: Text = Text::of(
-    "Where to look besides USB: an address in the network such as 192.168.1.10, or a port such as /dev/ttyUSB3. May be \
-     empty.",
+    "Where to search in addition to USB: a network address such as 192.168.1.10, or a port such as /dev/ttyUSB3. \
+     May be empty.",
     "Wo außer an USB zu suchen ist: eine Netzwerkadresse wie 192.168.1.10 oder ein Port wie /dev/ttyUSB3. Darf leer \
      sein.",
 );
 pub(in crate::console) const NOTHING_FOUND: Text =
-    Text::of("No other device of this kind was found", "Kein anderes Gerät dieser Art gefunden");
+    Text::of("No other device of this kind found", "Kein anderes Gerät dieser Art gefunden");
 pub(in crate::console) const NO_OTHER: Text = Text::of(
     "No other part of this rig has a device of this kind",
     "Kein anderer Teil dieses Aufbaus hat ein Gerät dieser Art",
 );
 pub(in crate::console) const EMULATED: Text = Text::of(
-    "Emulated devices stand where the rig file puts them: only exchanges are possible",
-    "Emulierte Geräte stehen, wo die Aufbaudatei sie vorsieht: nur Tauschen ist möglich",
+    "The rig file sets the addresses of emulated devices: they can only be swapped",
+    "Die Aufbaudatei legt die Adressen emulierter Geräte fest: nur Tauschen ist möglich",
 );
-pub(in crate::console) const EXCHANGE: Text = Text::of("Exchange right and left", "Rechts und links tauschen");
+pub(in crate::console) const EXCHANGE: Text = Text::of("Swap left and right", "Rechts und links tauschen");
 pub(in crate::console) const EXCHANGE_HOVER: Text = Text::of(
-    "The rig file is changed and the machine starts again, idle; press once more to take it back",
+    "Changes the rig file and restarts the machine, idle; press again to undo",
     "Ändert die Aufbaudatei und startet die Maschine neu, im Leerlauf; nochmals drücken macht es rückgängig",
 );
 pub(in crate::console) const WHICH: Text = Text::of(
-    "Which one is it? Move a handle, press a sensor, move a marker, press the pedal: its light goes on",
+    "Which device is which? Move a handle, press a sensor, move a marker or press the pedal: its light turns on",
     "Welches ist es? Handgerät bewegen, Sensor drücken, Marker bewegen, Pedal treten: seine Lampe leuchtet",
 );
 pub(in crate::console) const LIGHT_HOVER: Text = Text::of(
@@ -80,25 +81,24 @@ pub(in crate::console) const LIGHT_HOVER: Text = Text::of(
     "Leuchtet, solange sich die Messwerte um mehr als ihr Rauschen ändern, und eine halbe Sekunde danach",
 );
 
-pub(in crate::console) const ENGAGED: Text =
-    Text::of("Rest or stop first: the drives are on", "Zuerst Leerlauf oder Halt: die Antriebe sind ein");
-pub(in crate::console) const STOPPED: Text = Text::of("Release the stop first", "Zuerst Halt lösen");
+pub(in crate::console) const ENGAGED: Text = Text::of(
+    "Set the loop to idle or press Stop first: the drives are on",
+    "Zuerst Leerlauf oder Halt: die Antriebe sind ein",
+);
+pub(in crate::console) const STOPPED: Text = Text::of("Press Release stop first", "Zuerst Halt lösen drücken");
 pub(in crate::console) const STARTING: Text = Text::of("The machine is starting", "Die Maschine startet");
 
-/// Why nothing can be exchanged or chosen now.
 pub(in crate::console) fn not_changeable(reason: &str) -> String {
     told!(
-        "Devices cannot be exchanged or chosen now. {reason}.",
+        "Devices cannot be swapped or chosen now. {reason}.",
         "Geräte lassen sich jetzt nicht tauschen oder wählen. {reason}."
     )
 }
 
-/// Why an arm cannot be engaged.
 pub(in crate::console) fn not_to_be_engaged(side: &str, obstacle: &impl std::fmt::Display) -> String {
     told!("The {side} arm cannot be engaged: {obstacle}", "Arm {side} lässt sich nicht koppeln: {obstacle}")
 }
 
-/// Identity of a device.
 pub(in crate::console) fn identity(product: &str, serial: &str, firmware: &str) -> String {
     let serial =
         if serial.is_empty() { String::new() } else { told!(", serial number {serial}", ", Seriennummer {serial}") };
@@ -112,7 +112,6 @@ pub(in crate::console) fn clear_faults_of(name: &str) -> String {
     told!("Clear faults of the {name}", "Störungen zurücksetzen: {name}")
 }
 
-/// Rate and losses of a device.
 pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refused: u64) -> String {
     if lost + damaged + refused == 0 {
         return told!(
@@ -126,16 +125,14 @@ pub(in crate::console) fn delivery(rate_hz: f64, lost: u64, damaged: u64, refuse
     )
 }
 
-/// Number and longest duration of the outages.
 pub(in crate::console) fn outages(count: u64, longest_s: f64) -> String {
     let times = if count == 1 { word("once", "einmal").to_owned() } else { told!("{count} times", "{count}-mal") };
     told!(
-        "; gone {times} since the start, at longest for {longest_s:.1} s",
-        "; seit dem Start {times} weg, längstens {longest_s:.1} s"
+        "; lost {times} since the start, for up to {longest_s:.1} s",
+        "; seit dem Start {times} ausgefallen, bis zu {longest_s:.1} s lang"
     )
 }
 
-/// A device that was lost.
 pub(in crate::console) fn lost(cause: &str, delivery: &str) -> String {
     told!("lost: {cause}; {delivery}", "ausgefallen: {cause}; {delivery}")
 }
@@ -145,7 +142,6 @@ pub(in crate::console) fn of(what: &str, name: &str) -> String {
     format!("{what} {name}")
 }
 
-/// Heading of a column.
 pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'static str {
     match side {
         Some(nima_machine::rig::Side::Left) => word("Left", "Links"),
@@ -154,7 +150,7 @@ pub(in crate::console) fn column(side: Option<nima_machine::rig::Side>) -> &'sta
     }
 }
 
-/// A kind of part, on the button that exchanges them.
+/// Kind of part, on the button that swaps the devices of that kind.
 pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
     match kind {
         PartKind::Handle => word("Handles", "Handgeräte"),
@@ -168,10 +164,10 @@ pub(in crate::console) fn kind(kind: PartKind) -> &'static str {
 
 /// Accessible name of that button.
 pub(in crate::console) fn exchange(of: PartKind) -> String {
-    told!("Exchange {}", "{} tauschen", within(kind(of)))
+    told!("Swap {}", "{} tauschen", within(kind(of)))
 }
 
-/// The name of the light beside a device.
+/// Accessible name of the light next to a device.
 pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     match motion {
         Some(motion) => told!("Light of the {name}: {motion}", "Lampe {name}: {motion}"),
@@ -179,7 +175,7 @@ pub(in crate::console) fn light(name: &str, motion: Option<&str>) -> String {
     }
 }
 
-/// What a person does with a device whose number of this channel changes.
+/// Motion of the device that changes this channel.
 pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
     match (kind, channel) {
         (PartKind::Handle, 0..=2) => word("moved", "bewegt").to_owned(),
@@ -193,49 +189,43 @@ pub(in crate::console) fn motion(kind: PartKind, channel: usize) -> String {
     }
 }
 
-/// A candidate that another part of the rig has now.
 pub(in crate::console) fn candidate(identity: &str, other: Part) -> String {
     told!(
-        "{identity}: now the {}; the two are exchanged",
+        "{identity}: currently the {}; the two will be swapped",
         "{identity}: derzeit {}; beide werden getauscht",
         part_name(other)
     )
 }
 
-/// A device that tells no identity yet.
+/// Device without a reported identity.
 pub(in crate::console) const UNKNOWN_IDENTITY: Text = Text::of("Not connected", "Nicht verbunden");
 
-/// A candidate that was found.
 pub(in crate::console) fn found(identity: &str, place: &str) -> String {
     told!("{identity} at {place}", "{identity} an {place}")
 }
 
-/// A place where no device of this kind answers.
 pub(in crate::console) fn not_there(place: &str, cause: &str) -> String {
     format!("{place}: {cause}")
 }
 
-/// The change stands in the rig file that was in use.
 pub(in crate::console) fn saved(path: &std::path::Path) -> String {
     told!(
-        "Saved in the rig file {}. The machine has started again, idle.",
+        "Saved in the rig file {}. The machine has restarted, idle.",
         "In der Aufbaudatei {} gespeichert. Die Maschine ist neu gestartet, im Leerlauf.",
         path.display()
     )
 }
 
-/// The change stands in a new rig file.
 pub(in crate::console) fn saved_as(name: &str, path: &std::path::Path) -> String {
     told!(
-        "A built-in rig cannot be changed: saved as the new rig \"{name}\" in {}, which is in use now. The machine has \
-         started again, idle.",
+        "A built-in rig cannot be changed: saved as the new rig \"{name}\" in {}, which is now in use. The \
+         machine has restarted, idle.",
         "Ein eingebauter Aufbau ist nicht änderbar: als neuer Aufbau „{name}“ in {} gespeichert und jetzt aktiv. Die \
          Maschine ist neu gestartet, im Leerlauf.",
         path.display()
     )
 }
 
-/// The change was not made.
 pub(in crate::console) fn not_changed(cause: &str) -> String {
     told!("Not changed: {cause}", "Nicht geändert: {cause}")
 }

@@ -1,59 +1,54 @@
-//! The endoscope's picture.
+//! The endoscope image.
 
 use std::time::Duration;
 
 use crate::language::{Text, told, word};
 
-pub(in crate::console) const WAITING: Text =
-    Text::of("Waiting for the endoscope's picture", "Wartet auf das Endoskopbild");
+pub(in crate::console) const WAITING: Text = Text::of("Waiting for the endoscope image", "Wartet auf das Endoskopbild");
 pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoskop");
-pub(in crate::console) const STILL: Text = Text::of("One picture, which does not move", "Einzelbild, unbewegt");
-pub(in crate::console) const BLACK: Text = Text::of("Picture is black", "Bild ist schwarz");
+pub(in crate::console) const STILL: Text = Text::of("Still image", "Einzelbild, unbewegt");
+pub(in crate::console) const BLACK: Text = Text::of("Image is black", "Bild ist schwarz");
 pub(in crate::console) const BLACK_CURE: Text = Text::of(
-    "Switch the light source on, and take the cap off the lens",
+    "Switch on the light source and remove the lens cap",
     "Lichtquelle einschalten und Kappe vom Objektiv nehmen",
 );
-pub(in crate::console) const FROZEN_CURE: Text = Text::of(
-    "What you see is the past. Check the camera and its cable.",
-    "Gezeigt wird die Vergangenheit. Kamera und Kabel prüfen.",
-);
+pub(in crate::console) const FROZEN_CURE: Text =
+    Text::of("This image is old. Check the camera and its cable.", "Dieses Bild ist alt. Kamera und Kabel prüfen.");
 pub(in crate::console) const LATE_CURE: Text = Text::of(
-    "Move slowly. Give the camera a line of its own, or a smaller picture.",
-    "Langsam bewegen. Der Kamera eine eigene Leitung oder ein kleineres Bild geben.",
+    "Move slowly. Connect the camera to its own port, or set a smaller image.",
+    "Langsam bewegen. Kamera an einen eigenen Anschluss legen oder ein kleineres Bild einstellen.",
 );
 pub(in crate::console) const DAMAGED_CURE: Text = Text::of(
-    "The last whole picture is shown. Check the cable to the camera.",
+    "The last complete image is shown. Check the camera cable.",
     "Gezeigt wird das letzte ganze Bild. Kabel zur Kamera prüfen.",
 );
 pub(in crate::console) const SIZE_CURE: Text = Text::of(
-    "Set the camera to the size that the rig file has. Until then no forces are drawn.",
+    "Set the camera to the image size in the rig file. Until then no forces are drawn.",
     "Kamera auf die Größe der Aufbaudatei stellen. Bis dahin erscheinen keine Kräfte.",
 );
 pub(in crate::console) const FORCES_DRAWN: Text =
     Text::of("Forces are drawn at the tips; O hides them", "Kräfte an den Spitzen; O blendet sie aus");
-pub(in crate::console) const FORCES_AHEAD: Text = Text::of(
-    "Forces of now, ahead of the picture; O hides them",
-    "Aktuelle Kräfte, dem Bild voraus; O blendet sie aus",
-);
+pub(in crate::console) const FORCES_AHEAD: Text =
+    Text::of("Current forces, ahead of the image; O hides them", "Aktuelle Kräfte, dem Bild voraus; O blendet sie aus");
 pub(in crate::console) const FORCES_HIDDEN: Text =
-    Text::of("O draws the forces at the tips", "O zeigt die Kräfte an den Spitzen");
+    Text::of("Forces are hidden; O draws them at the tips", "Kräfte ausgeblendet; O zeigt sie an den Spitzen");
 pub(in crate::console) const BASE_MISSING: Text = Text::of(
-    "the picture that it builds upon is not in the session",
+    "the image that it depends on is not in the session",
     "das Bild, auf dem es aufbaut, fehlt in der Sitzung",
 );
 pub(in crate::console) const NOT_RECORDED: Text = Text::of(
-    "Not in the session: only JPEGs and H.264 are recorded",
+    "Not in the session: only JPEG and H.264 images are recorded",
     "Nicht in der Sitzung: nur JPEG und H.264 werden aufgezeichnet",
 );
 pub(in crate::console) const LEFT_HALF: Text =
-    Text::of("Left half; V shows the right one", "Linke Hälfte; V zeigt die rechte");
-pub(in crate::console) const RIGHT_HALF: Text = Text::of("Right half; V shows both", "Rechte Hälfte; V zeigt beide");
+    Text::of("Left image; V shows the right image", "Linkes Bild; V zeigt das rechte");
+pub(in crate::console) const RIGHT_HALF: Text = Text::of("Right image; V shows both", "Rechtes Bild; V zeigt beide");
 pub(in crate::console) const RIGHT_WITHOUT_FORCES: Text = Text::of(
-    "Right half without forces: the rig file has no endoscope.baseline_m; V shows both",
-    "Rechte Hälfte ohne Kräfte: endoscope.baseline_m fehlt in der Aufbaudatei; V zeigt beide",
+    "Right image without forces: the rig file has no endoscope.baseline_m; V shows both",
+    "Rechtes Bild ohne Kräfte: endoscope.baseline_m fehlt in der Aufbaudatei; V zeigt beide",
 );
 pub(in crate::console) const BOTH_HALVES: Text =
-    Text::of("Both halves; V shows the left one", "Beide Hälften; V zeigt die linke");
+    Text::of("Both images; V shows the left image", "Beide Bilder; V zeigt das linke");
 pub(in crate::console) const NO_CAMERA: Text = Text::of(
     "No forces are drawn: the rig file has no [endoscope.camera]",
     "Keine Kräfte im Bild: [endoscope.camera] fehlt in der Aufbaudatei",
@@ -64,105 +59,89 @@ pub(in crate::console) const NO_MARKER: Text = Text::of(
     "Keine Kräfte im Bild: Der Tracker sieht den Marker des Endoskops nicht, oder die Hand-Auge-Kalibrierung fehlt",
 );
 pub(in crate::console) const NO_PLACE: Text = Text::of(
-    "No forces are drawn: the camera's place is not known; calibrate the camera",
+    "No forces are drawn: the camera position is unknown; calibrate the camera",
     "Keine Kräfte im Bild: Lage der Kamera unbekannt; Kamera kalibrieren",
 );
 
-/// The check of the camera was too bad.
 pub(in crate::console) fn forces_off(off_px: f64) -> String {
     told!(
-        "Forces are drawn {off_px:.0} px beside the tips or more: calibrate the camera; O hides them",
+        "Forces are drawn {off_px:.0} px or more away from the tips: calibrate the camera; O hides them",
         "Kräfte liegen {off_px:.0} px oder mehr neben den Spitzen: Kamera kalibrieren; O blendet sie aus"
     )
 }
 
-/// No new picture for so long.
 pub(in crate::console) fn frozen(stood: Duration) -> String {
-    told!("Picture is frozen: nothing new for {:.1} s", "Bild steht: seit {:.1} s nichts Neues", stood.as_secs_f64())
+    told!("Image is frozen: no new image for {:.1} s", "Bild steht: seit {:.1} s nichts Neues", stood.as_secs_f64())
 }
 
-/// How old a late picture is.
 pub(in crate::console) fn late(late: Duration) -> String {
-    told!("Picture is {} ms old", "Bild ist {} ms alt", 10 * (late.as_millis() / 10))
+    told!("Image is {} ms old", "Bild ist {} ms alt", 10 * (late.as_millis() / 10))
 }
 
-/// A picture that cannot be shown.
 pub(in crate::console) fn damaged(why: &str) -> String {
-    told!("Picture is damaged: {why}", "Bild ist beschädigt: {why}")
+    told!("Image is damaged: {why}", "Bild ist beschädigt: {why}")
 }
 
-/// A picture of another size, px.
+/// Sizes in px.
 pub(in crate::console) fn size([width, height]: [usize; 2], [wanted_width, wanted_height]: [usize; 2]) -> String {
     told!(
-        "Picture is {width} x {height} pixels, not {wanted_width} x {wanted_height}",
+        "Image is {width} x {height} pixels, not {wanted_width} x {wanted_height}",
         "Bild hat {width} x {height} Pixel, nicht {wanted_width} x {wanted_height}"
     )
 }
 
-/// There is no picture.
 pub(in crate::console) fn lost(why: &str) -> String {
-    told!("Picture is lost: {why}", "Bild verloren: {why}")
+    told!("Image is lost: {why}", "Bild verloren: {why}")
 }
 
-/// The address cannot be used.
 pub(in crate::console) fn refused(why: &str) -> String {
-    told!("No picture: {why}", "Kein Bild: {why}")
+    told!("No image: {why}", "Kein Bild: {why}")
 }
 
-/// What to do about an address that cannot be used.
+/// Remedy for an unusable address.
 pub(in crate::console) const REFUSED_CURE: Text =
     Text::of("Correct endoscope.url in the rig file", "endoscope.url in der Aufbaudatei korrigieren");
 
-/// Age and rate of the picture.
 pub(in crate::console) fn figures(age: Duration, rate_hz: f64) -> String {
-    told!("{} ms old, {rate_hz:.0} pictures a second", "{} ms alt, {rate_hz:.0} Bilder/s", age.as_millis())
+    told!("{} ms old, {rate_hz:.0} images per second", "{} ms alt, {rate_hz:.0} Bilder/s", age.as_millis())
 }
 
-/// Age of a recorded picture.
 pub(in crate::console) fn recorded(age: Duration) -> String {
-    told!("Recorded picture, {} ms old then", "Aufgezeichnetes Bild, damals {} ms alt", age.as_millis())
+    told!("Recorded image, {} ms old then", "Aufgezeichnetes Bild, damals {} ms alt", age.as_millis())
 }
 
 pub(in crate::console) const SEARCHING: Text =
-    Text::of("Looking for the picture of this moment", "Sucht das Bild dieses Moments");
+    Text::of("Searching for the image of this moment", "Sucht das Bild dieses Moments");
 
-/// There is no recorded picture of a moment.
 pub(in crate::console) fn none_then(why: Option<&str>) -> String {
     why.map_or_else(
         || {
-            word(
-                "No picture came in the two seconds before this moment",
-                "Kein Bild in den zwei Sekunden vor diesem Moment",
-            )
-            .to_owned()
+            word("No image in the two seconds before this moment", "Kein Bild in den zwei Sekunden vor diesem Moment")
+                .to_owned()
         },
-        |why| told!("The picture of this moment cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
+        |why| told!("The image of this moment cannot be read: {why}", "Bild dieses Moments nicht lesbar: {why}"),
     )
 }
 
-/// How far the picture is zoomed, and how to get back.
 pub(in crate::console) fn zoomed(zoom: f32) -> String {
     told!(
-        "Zoom {zoom:.1}; drag moves, a double click shows all",
+        "Zoom {zoom:.1}; drag to move, double-click to show all",
         "Zoom {zoom:.1}; Ziehen verschiebt, Doppelklick zeigt alles"
     )
 }
 
-/// A tip that is not in the view.
 pub(in crate::console) fn tip(side: &str) -> String {
     let after = side.to_lowercase();
     told!("{side} tip", "Spitze {after}")
 }
 
-/// The whole picture in words.
 pub(in crate::console) fn picture(standing: &str) -> String {
-    told!("Endoscope's picture: {standing}", "Endoskopbild: {standing}")
+    told!("Endoscope image: {standing}", "Endoskopbild: {standing}")
 }
 
-/// A picture that comes as it should.
+/// Image without a problem.
 pub(in crate::console) const LIVE: Text = Text::of("live", "live");
 
-/// Label of a force at a tip, N.
 pub(in crate::console) fn force(size_n: f64) -> String {
     format!("{size_n:.1} N")
 }

@@ -1,22 +1,22 @@
-//! The feedback panel: mode, gain, delay, dead band.
+//! The Feedback panel: mode, gain, delay, dead band.
 
 use nima_core::limits::{self, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S};
 
 use crate::language::{Text, told};
 
-/// Meaning of the gain, which changes at most so fast (1/s).
+/// Hover text of the gain, with its maximum rate of change, 1/s.
 pub(in crate::console) fn gain_hover(rate_per_s: f64) -> String {
     let Limits { min, max, .. } = limits::GAIN;
     let most = GAIN_ABOVE_ONE.max;
     told!(
-        "Ratio of the force in the hand to the force that the mode asks for, no unit: {min} to {max}, or up to {most} if \
-         allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per second.",
+        "Ratio of the force in the hand to the force that the mode requests, no unit: {min} to {max}, or up to \
+         {most} if allowed below. 0 is no force, 1 is natural. The gain changes by at most {rate_per_s} per \
+         second.",
         "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit: {min} bis {max}, oder bis {most}, wenn \
          unten erlaubt. 0 ist keine Kraft, 1 ist natürlich. Ändert sich um höchstens {rate_per_s} je Sekunde."
     )
 }
 
-/// Meaning of the delay.
 pub(in crate::console) fn delay_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DELAY_S.per(1e-3, "ms");
     told!(
@@ -29,32 +29,30 @@ pub(in crate::console) fn delay_hover() -> String {
     )
 }
 
-/// Meaning of the dead band.
 pub(in crate::console) fn dead_band_hover() -> String {
     let Limits { min, max, unit } = SLIDER_DEAD_BAND_M_S.per(1e-3, "mm/s");
     told!(
-        "Speed of the hand, {min} to {max} {unit}, below which no force is rendered: at standstill an impedance cannot \
-         be identified. The paper uses 1 mm/s; 0 is no dead band. The force fades in and reaches its full \
-         size at twice this speed. No effect while \"Keep force at standstill\" is on.",
+        "Hand speed, {min} to {max} {unit}, below which no force is rendered: at standstill an impedance cannot \
+         be identified. The paper uses 1 mm/s; 0 switches the dead band off. The force fades in and reaches its \
+         full magnitude at twice this speed. No effect while \"Keep force at standstill\" is on.",
         "Handgeschwindigkeit, {min} bis {max} {unit}, unter der keine Kraft dargestellt wird: im Stillstand ist eine \
          Impedanz nicht identifizierbar. Der Artikel verwendet 1 mm/s; 0 heißt kein Totband. Die Kraft blendet ein und ist \
          bei der doppelten Geschwindigkeit voll da. Ohne Wirkung, solange „Kraft im Stillstand halten“ ein ist."
     )
 }
 pub(in crate::console) const HOLD_HOVER: Text = Text::of(
-    "On: the force stays when the hand stops, so that you feel a steady push. Off: it fades out in the \
-    dead band, as in the paper, and \"Why no force?\" shows how much is not rendered (N).",
+    "On: the force stays when the hand stops, so that you feel a steady push. Off: it fades out in the dead \
+     band, as in the paper, and \"Why no force?\" shows how much is not rendered (N).",
     "Ein: die Kraft bleibt, wenn die Hand anhält; ein stetiger Druck ist spürbar. Aus: sie blendet im Totband aus wie \
      im Artikel, und „Warum keine Kraft?“ zeigt, wie viel nicht dargestellt wird (N).",
 );
 pub(in crate::console) const GAIN: Text = Text::of("Gain", "Verstärkung");
-/// What the box above the usual gain does.
 pub(in crate::console) fn allow_above_1_hover() -> String {
     let most = GAIN_ABOVE_ONE.max;
     let max = limits::GAIN.max;
     told!(
-        "Allows a gain up to {most}, so that soft tissue feels stiffer than it is. The force ceiling still \
-         applies. Clearing the box brings the gain back to at most {max}.",
+        "Allows a gain of up to {most}, so that soft tissue feels stiffer than it is. The force ceiling still \
+         applies. Clearing the box reduces the gain to at most {max}.",
         "Erlaubt Verstärkungen bis {most}, sodass sich weiches Gewebe steifer anfühlt, als es ist. Die Höchstkraft gilt \
          weiter. Abwählen bringt die Verstärkung auf höchstens {max} zurück."
     )
@@ -68,7 +66,6 @@ pub(in crate::console) const LINK_DELAY: Text = Text::of("Link delay", "Verzöge
 pub(in crate::console) const DEAD_BAND: Text = Text::of("Dead band", "Totband");
 pub(in crate::console) const HOLD: Text = Text::of("Keep force at standstill", "Kraft im Stillstand halten");
 
-/// The present gain, while it ramps to the chosen one.
 pub(in crate::console) fn gain_in_use(gain: f64) -> String {
     told!("in use {gain:.2}", "wirksam {gain:.2}")
 }

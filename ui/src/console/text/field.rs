@@ -20,26 +20,28 @@ pub(in crate::console) const FRAMES_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SHADOWS: Text = Text::of("Shadows on the board", "Schatten auf dem Brett");
 pub(in crate::console) const SHADOWS_HOVER: Text = Text::of(
-    "What stands between the lamp and the board throws a shadow: it helps to judge height. On tissue the shafts always \
-     throw theirs.",
+    "Objects between the lamp and the board cast a shadow, which helps to judge height. On tissue the shafts \
+     always cast shadows.",
     "Was zwischen Lampe und Brett steht, wirft Schatten: das hilft, Höhe einzuschätzen. Auf Gewebe werfen die Schäfte \
      immer Schatten.",
 );
 pub(in crate::console) const DEPTH: Text = Text::of("Darker with distance", "Dunkler mit Abstand");
 pub(in crate::console) const DEPTH_HOVER: Text = Text::of(
-    "As under an endoscope, whose light is at the lens: what is farther away is darker. It helps to judge depth.",
+    "More distant objects are darker, as with an endoscope whose light is at the lens. This helps to judge depth.",
     "Wie unter einem Endoskop mit Licht am Objektiv: Ferneres ist dunkler. Das hilft, Tiefe einzuschätzen.",
 );
 pub(in crate::console) const ROUND: Text =
-    Text::of("Round picture in the surgeon's view", "Rundes Bild in der Ansicht Chirurg");
-pub(in crate::console) const ROUND_HOVER: Text =
-    Text::of("The endoscope's picture is a disc with a dark rim", "Das Endoskopbild ist eine Scheibe mit dunklem Rand");
+    Text::of("Round image in the Surgeon view", "Rundes Bild in der Ansicht Chirurg");
+pub(in crate::console) const ROUND_HOVER: Text = Text::of(
+    "Shows the endoscope image as a disc with a dark rim",
+    "Das Endoskopbild ist eine Scheibe mit dunklem Rand",
+);
 pub(in crate::console) const FRAME_WORLD: Text = Text::of("World", "Welt");
 pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope", "Endoskop");
 pub(in crate::console) const TROCAR: Text = Text::of("Trocar", "Trokar");
 pub(in crate::console) const TIP: Text = Text::of("Tip", "Spitze");
 pub(in crate::console) const LEAD: Text = Text::of("Drive by mouse (M)", "Maussteuerung (M)");
-pub(in crate::console) const LEAD_END: Text = Text::of("Let go (M)", "Loslassen (M)");
+pub(in crate::console) const LEAD_END: Text = Text::of("Stop driving (M)", "Steuerung beenden (M)");
 pub(in crate::console) const ARROW_MEASURED: Text = Text::of("Measured force", "Gemessene Kraft");
 pub(in crate::console) const ARROW_RENDERED: Text = Text::of("Rendered force", "Dargestellte Kraft");
 pub(in crate::console) const RESET_VIEW: Text = Text::of("Endoscope view", "Endoskopsicht");
@@ -48,7 +50,6 @@ pub(in crate::console) const VIEW_HOVER: Text = Text::of(
     "Ziehen dreht, Mausrad zoomt, Doppelklick setzt zurück",
 );
 
-/// How the instrument is led.
 pub(in crate::console) fn lead_hover(has_jaws: bool, is_bimanual: bool) -> String {
     let jaws = if has_jaws { word("\nG: open or close the jaws", "\nG: Backen öffnen oder schließen") } else { "" };
     let other = match (is_bimanual, has_jaws) {
@@ -62,12 +63,10 @@ pub(in crate::console) fn lead_hover(has_jaws: bool, is_bimanual: bool) -> Strin
     )
 }
 
-/// Name of the hand whose instrument is led.
 pub(in crate::console) fn led(side: &str) -> String {
-    told!("{side} (led)", "{side} (gesteuert)")
+    told!("{side} (driven)", "{side} (gesteuert)")
 }
 
-/// The view cannot be drawn.
 pub(in crate::console) fn not_drawn(problem: &str) -> String {
     told!(
         "This graphics driver cannot draw the 3-D view: {problem}",
@@ -75,27 +74,24 @@ pub(in crate::console) fn not_drawn(problem: &str) -> String {
     )
 }
 
-/// Label of the sphere of the force ceiling.
 pub(in crate::console) fn ceiling_sphere(ceiling_n: f32) -> String {
     told!("ceiling {ceiling_n:.1} N", "Höchstkraft {ceiling_n:.1} N")
 }
 
-/// Label of the ceiling's mark on the gauges.
 pub(in crate::console) fn ceiling_mark(ceiling_n: f64) -> String {
     told!("ceiling\n{ceiling_n:.0} N", "max.\n{ceiling_n:.0} N")
 }
 
-/// Addition for the side, if there are two arms.
+/// Suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     told!(" of the {side} hand", " (Hand {side})")
 }
 
-/// A position in the base's frame, mm.
+/// Position in the base frame, mm.
 pub(in crate::console) fn place([x, y, z]: [f32; 3]) -> String {
     told!("x {x:.1}, y {y:.1}, z {z:.1} mm (world)", "x {x:.1}, y {y:.1}, z {z:.1} mm (Welt)")
 }
 
-/// Hover text of the tissue.
 pub(in crate::console) fn tissue(place: &str) -> String {
     told!("Tissue at {place}", "Gewebe bei {place}")
 }
@@ -108,7 +104,6 @@ pub(in crate::console) fn arrow(name: &str, whose: &str, size_n: f32, [x, y, z]:
     )
 }
 
-/// Depth of the tip in the tissue.
 pub(in crate::console) fn depth(depth_mm: f32) -> String {
     told!("\n{depth_mm:.1} mm below the surface at rest", "\n{depth_mm:.1} mm unter der Ruheoberfläche")
 }
@@ -118,12 +113,10 @@ pub(in crate::console) fn tip(whose: &str, place: &str, depth: &str) -> String {
     told!("Tip{whose} at {place}{depth}", "Spitze{whose} bei {place}{depth}")
 }
 
-/// Hover text of a target.
 pub(in crate::console) fn target(number: usize, whose: &str, place: &str) -> String {
     told!("Target {number}{whose} at {place}", "Ziel {number}{whose} bei {place}")
 }
 
-/// Hover text of the trocar.
 pub(in crate::console) fn trocar(whose: &str, place: &str) -> String {
     told!(
         "Trocar{whose}, the remote centre of motion, at {place}",

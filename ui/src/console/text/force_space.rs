@@ -3,11 +3,11 @@
 use crate::language::{Text, told};
 
 pub(in crate::console) const HOVER: Text = Text::of(
-    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. \
-    The dot is the force now, or at the time under the pointer in a trace. The three rings are an \
-    ellipsoid around the force measured now; it contains 95 % of the errors (rendered minus measured) if \
-    they are normally distributed. The share that it really contains is written below. The dashed circle \
-    is the force ceiling. Drag to turn, double-click to reset.",
+    "Measured and rendered force of the last six seconds in force space (N, world axes), one line each. The dot \
+     is the force now, or at the time under the pointer in a trace. The three rings are an ellipsoid around the \
+     force measured now; it contains 95 % of the errors (rendered minus measured) if they are normally \
+     distributed. The percentage that it really contains is given below. The dashed circle is the force ceiling. \
+     Drag to turn, double-click to reset.",
     "Gemessene und dargestellte Kraft der letzten sechs Sekunden im Kraftraum (N, Weltachsen), je eine Linie. Der \
      Punkt ist die Kraft jetzt oder zur Zeit unter dem Zeiger in einem Verlauf. Die drei Ringe sind ein Ellipsoid um \
      die jetzt gemessene Kraft; es enthält 95 % der Fehler (dargestellt minus gemessen), falls sie normalverteilt \
@@ -20,15 +20,15 @@ pub(in crate::console) fn canvas(words: &str) -> String {
     told!("Force space. {words}", "Kraftraum. {words}")
 }
 
-/// The measured force is not known now; two lines, separated by a semicolon.
+/// Two lines, separated by a semicolon.
 pub(in crate::console) fn unknown(seconds: f64) -> String {
     told!(
-        "Last {seconds:.0} s; the measured force is unknown now",
+        "Last {seconds:.0} s; the measured force is currently unknown",
         "Letzte {seconds:.0} s; die gemessene Kraft ist jetzt unbekannt"
     )
 }
 
-/// Not enough data for the ellipsoid yet; two lines, separated by a semicolon.
+/// Two lines, separated by a semicolon.
 pub(in crate::console) fn too_short(seconds: f64) -> String {
     told!(
         "Last {seconds:.0} s; the error ellipsoid needs one second of data",
@@ -36,7 +36,7 @@ pub(in crate::console) fn too_short(seconds: f64) -> String {
     )
 }
 
-/// The ellipsoid (mean and half axes in N, share of samples inside in percent); two lines, separated by a semicolon.
+/// Two lines, separated by a semicolon. Mean and half axes in N, `percent` of samples inside.
 pub(in crate::console) fn error(seconds: f64, mean_n: f64, [a, b, c]: [f64; 3], percent: f64) -> String {
     told!(
         "Error, last {seconds:.0} s: mean {mean_n:.2} N, 95 % half axes; {a:.2}, {b:.2}, {c:.2} N (contains \

@@ -1,4 +1,4 @@
-//! The traces of force over time.
+//! The Traces panel: force over time.
 
 use crate::language::{Text, told, word};
 
@@ -16,10 +16,10 @@ pub(in crate::console) const MEASURED: Text = Text::of("measured", "gemessen");
 pub(in crate::console) const RENDERED: Text = Text::of("rendered", "dargestellt");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
 pub(in crate::console) const PAUSE_HOVER: Text = Text::of(
-    "Freezes the picture; data are still recorded, and the control loop is not affected",
-    "Friert die Anzeige ein; Aufzeichnung und Regelung laufen weiter",
+    "Pauses the display only; recording and the control loop continue",
+    "Hält nur die Anzeige an; Aufzeichnung und Regelung laufen weiter",
 );
-pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Weiter");
+pub(in crate::console) const GO_ON: Text = Text::of("Resume", "Fortsetzen");
 pub(in crate::console) const GO_ON_HOVER: Text = Text::of("Shows new data again", "Zeigt wieder neue Daten");
 pub(in crate::console) const MARK: Text = Text::of("Mark (E)", "Marke (E)");
 pub(in crate::console) const MARK_HOVER: Text = Text::of(
@@ -44,15 +44,14 @@ pub(in crate::console) fn plot(axis: &str, side: &str) -> String {
     told!("Force along {axis}, {side} hand", "Kraft längs {axis}, Hand {side}")
 }
 
-/// What that plot shows: the force now (signed) and the largest in this time with their units, measured and rendered.
+/// For measured and rendered force: the current value (signed) and the maximum over `seconds`, both with their unit.
 pub(in crate::console) fn summary([measured, rendered]: [[String; 2]; 2], seconds: f64) -> String {
     let told = |[now, most]: [String; 2]| {
-        told!("{now} now, {most} at most in {seconds:.0} s", "{now} jetzt, höchstens {most} in {seconds:.0} s")
+        told!("{now} now, maximum {most} in {seconds:.0} s", "{now} jetzt, Maximum {most} in {seconds:.0} s")
     };
     told!("Measured {}; rendered {}", "Gemessen {}; dargestellt {}", told(measured), told(rendered))
 }
 
-/// Switch: forces of which side.
 pub(in crate::console) fn forces_of(side: &str) -> String {
     told!("Shows the forces of the {side} hand", "Zeigt die Kräfte der Hand {side}")
 }
@@ -66,17 +65,17 @@ pub(in crate::console) fn before_now(ago_s: f64, axis: &str, measured: &str, ren
 }
 
 pub(in crate::console) const TWIST_HOVER: Text = Text::of(
-    "Torque about the shaft of the instrument, against the clock as seen from the trocar: of what the jaws hold or \
-     touch, and on the wrist sensor as it reads it, with its bias. A ring that is held off its centre causes it. It is \
-     not rendered to the hand.",
+    "Torque about the instrument shaft, counter-clockwise as seen from the trocar: the torque of the object that \
+     the jaws hold or touch, and the torque that the wrist sensor reads, bias included. A ring held off its \
+     centre causes it. It is not rendered to the hand.",
     "Drehmoment um den Schaft des Instruments, vom Trokar gesehen gegen den Uhrzeigersinn: dessen, was die Backen \
      halten oder berühren, und am Handgelenksensor wie abgelesen, mit Nullpunkt. Ursache: ein außermittig gehaltener \
      Ring. Es wird nicht in der Hand dargestellt.",
 );
 
-/// The torque about the shaft (mNm): of what the jaws hold, and at the wrist sensor, each where it is known.
+/// Torques about the shaft in mNm, of the object in the jaws and at the wrist sensor; `None` if unknown.
 pub(in crate::console) fn twist([jaws_mnm, wrist_mnm]: [Option<f64>; 2]) -> String {
-    // Not `-0.0`.
+    // Avoids `-0.0`.
     let told =
         |mnm: f64, whose: &str| told!("{:+.2} mNm {whose}", "{:+.2} mNm {whose}", (mnm * 100.0).round() / 100.0 + 0.0);
     let both = [

@@ -17,15 +17,15 @@ pub(in crate::console) const TIP_MEANING: Text = Text::of(
     "Bestimmt die Instrumentenspitze im Flanschsystem des Arms",
 );
 pub(in crate::console) const HAND_EYE_MEANING: Text = Text::of(
-    "Finds the marker on the instrument, and the tracker beside the arm",
-    "Bestimmt den Marker am Instrument und den Tracker neben dem Arm",
+    "Finds where the marker is on the instrument, and where the tracker is relative to the arm",
+    "Bestimmt, wo der Marker am Instrument sitzt und wo der Tracker relativ zum Arm steht",
 );
 pub(in crate::console) const TABLE_MEANING: Text = Text::of(
     "Finds origin and plane of the workspace from points touched with the tip",
     "Bestimmt Ursprung und Ebene des Arbeitsraums aus Punkten, die die Spitze berührt",
 );
 pub(in crate::console) const VIEW_MEANING: Text = Text::of(
-    "Finds how the endoscope's picture is turned against arm and handle",
+    "Finds how the endoscope image is rotated relative to arm and handle",
     "Bestimmt, wie das Endoskopbild gegen Arm und Handgerät verdreht ist",
 );
 pub(in crate::console) const TROCAR_MEANING: Text =
@@ -52,14 +52,14 @@ pub(in crate::console) const TIP_TASK: Text = Text::of(
      Die Spitze muss in der Mulde bleiben.",
 );
 pub(in crate::console) const HAND_EYE_BEFORE: Text = Text::of(
-    "Take the instrument out of the trocar, and turn its marker towards the tracker. The other arm and its marker \
-     rest. Recording begins with the next step.",
-    "Instrument aus dem Trokar nehmen und seinen Marker zum Tracker drehen. Der andere Arm und sein Marker ruhen. Die \
-     Aufzeichnung beginnt mit dem nächsten Schritt.",
+    "Take the instrument out of the trocar, and turn its marker towards the tracker. Keep the other arm and its \
+     marker at rest. Recording begins with the next step.",
+    "Instrument aus dem Trokar nehmen und seinen Marker zum Tracker drehen. Den anderen Arm und seinen Marker \
+     ruhen lassen. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const HAND_EYE_TASK: Text = Text::of(
-    "Tilt and turn the instrument in every pose, also about its shaft; moves without turns tell nothing. Hold each \
-     pose still for half a second.",
+    "Tilt and turn the instrument in every pose, also about its shaft; moving without turning does not help. \
+     Hold each pose still for half a second.",
     "Instrument in jeder Pose kippen und drehen, auch um den Schaft; Verschieben ohne Drehen nützt nichts. Jede Pose \
      eine halbe Sekunde stillhalten.",
 );
@@ -74,11 +74,11 @@ pub(in crate::console) const TABLE_TASK: Text = Text::of(
     "Jeden Punkt mit der Spitze berühren und eine halbe Sekunde stillhalten. Falsch aufgezeichnete Punkte entfernen.",
 );
 pub(in crate::console) const VIEW_BEFORE: Text = Text::of(
-    "Bring the tip into the middle of the endoscope's picture and hold it still. Recording begins with the next step.",
+    "Bring the tip to the middle of the endoscope image and hold it still. Recording begins with the next step.",
     "Spitze in die Mitte des Endoskopbilds bringen und stillhalten. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const VIEW_TASK: Text = Text::of(
-    "Look at the picture only. Move the tip about 3 cm each time, then hold still for half a second.",
+    "Look only at the image. Move the tip about 3 cm each time, then hold still for half a second.",
     "Nur auf das Bild sehen. Spitze jeweils etwa 3 cm bewegen, dann eine halbe Sekunde stillhalten.",
 );
 pub(in crate::console) const VIEW_HANDLE_BEFORE: Text = Text::of(
@@ -86,14 +86,14 @@ pub(in crate::console) const VIEW_HANDLE_BEFORE: Text = Text::of(
     "Handgerät in der Mitte seines Bereichs stillhalten. Die Aufzeichnung beginnt mit dem nächsten Schritt.",
 );
 pub(in crate::console) const VIEW_HANDLE_TASK: Text = Text::of(
-    "Look at the picture only. Move the handle about 3 cm each time, as if the tip followed, then hold still for half \
-     a second.",
+    "Look only at the image. Move the handle about 3 cm each time, as if the tip followed, then hold still for \
+     half a second.",
     "Nur auf das Bild sehen. Handgerät jeweils etwa 3 cm bewegen, als folgte die Spitze, dann eine halbe Sekunde \
      stillhalten.",
 );
 pub(in crate::console) const TROCAR_BEFORE: Text = Text::of(
-    "Put the instrument through the trocar; the tip must be clear of tissue. Recording begins with the next step.",
-    "Instrument durch den Trokar führen; die Spitze muss frei von Gewebe sein. Die Aufzeichnung beginnt mit dem \
+    "Insert the instrument through the trocar; keep the tip clear of tissue. Recording begins with the next step.",
+    "Instrument durch den Trokar führen; die Spitze frei von Gewebe halten. Die Aufzeichnung beginnt mit dem \
      nächsten Schritt.",
 );
 pub(in crate::console) const TROCAR_TASK: Text = Text::of(
@@ -112,14 +112,15 @@ pub(in crate::console) const BY_TRACKER: Text = Text::of(
     "Mit dem Tracker statt mit den Armgelenken messen",
 );
 pub(in crate::console) const BY_TRACKER_HOVER: Text = Text::of(
-    "The tracker sees the patient's trocar move, which joints that are held in a configured trocar do not tell",
-    "Der Tracker sieht, wie sich der Trokar des Patienten bewegt; Gelenke, an einen eingestellten Trokar gebunden, \
-     zeigen das nicht",
+    "The tracker detects motion of the patient's trocar; the joints of an arm with a configured trocar cannot \
+     show it",
+    "Der Tracker erkennt Bewegungen des Trokars am Patienten; die Gelenke eines Arms mit fest eingestelltem \
+     Trokar zeigen sie nicht",
 );
 pub(in crate::console) const BY_HANDLE: Text =
     Text::of("Move the handle instead of the tip", "Handgerät statt Spitze bewegen");
 pub(in crate::console) const BY_HANDLE_HOVER: Text = Text::of(
-    "Do both, one after the other: then the handle's right is the picture's right",
+    "Do both, one after the other: then right on the handle is right in the image",
     "Beides nacheinander tun: dann ist rechts am Handgerät auch rechts im Bild",
 );
 pub(in crate::console) const NEEDS_HAND_EYE: Text =
@@ -144,28 +145,28 @@ pub(in crate::console) const HOLD_STILL: Text = Text::of("Hold still where you b
 pub(in crate::console) const THE_TIP: Text = Text::of("Tip", "Spitze");
 pub(in crate::console) const THE_HANDLE: Text = Text::of("Handle", "Handgerät");
 pub(in crate::console) const ALL_RECORDED: Text =
-    Text::of("All recorded: let go, and press Next", "Alles aufgezeichnet: loslassen und Weiter drücken");
+    Text::of("All recorded: release, then press Next", "Alles aufgezeichnet: loslassen und Weiter drücken");
 pub(in crate::console) const PAUSED: Text = Text::of("paused", "Pause");
 
 pub(in crate::console) const STEP_CHECK_HOVER: Text =
-    Text::of("Checks that everything that is needed sends data", "Prüft, ob alles Nötige Daten sendet");
+    Text::of("Checks that all required devices send data", "Prüft, ob alle nötigen Geräte Daten senden");
 pub(in crate::console) const STEP_RECORD: Text = Text::of("Record", "Aufzeichnen");
 pub(in crate::console) const STEP_RECORD_HOVER: Text =
-    Text::of("Follow the instructions until all is recorded", "Anweisungen folgen, bis alles aufgezeichnet ist");
+    Text::of("Follow the instructions until everything is recorded", "Anweisungen folgen, bis alles aufgezeichnet ist");
 pub(in crate::console) const STEP_RESULT_HOVER: Text = Text::of(
-    "The result, its errors, and what it changes in the rig file",
+    "The result, its errors, and the changes to the rig file",
     "Ergebnis, seine Fehler, und was es in der Aufbaudatei ändert",
 );
 pub(in crate::console) const STEP_SAVE_HOVER: Text = Text::of(
-    "Saves the record, and writes the numbers into the rig file; its comments stay",
+    "Saves the record and writes the values into the rig file; its comments stay",
     "Speichert das Protokoll und schreibt die Werte in die Aufbaudatei; Kommentare bleiben",
 );
 pub(in crate::console) const CHECKS_TITLE: Text = Text::of("Before the recording", "Vor der Aufzeichnung");
 pub(in crate::console) const CHECKS_HOVER: Text =
-    Text::of("Everything that is needed must send data first", "Alles Nötige muss zuerst Daten senden");
+    Text::of("All required devices must send data first", "Alle nötigen Geräte müssen zuerst Daten senden");
 pub(in crate::console) const CHECK_ARM: Text = Text::of("Joints of the arm", "Gelenke des Arms");
 pub(in crate::console) const CHECK_MARKER: Text =
-    Text::of("Marker in sight of the tracker", "Marker im Sichtfeld des Trackers");
+    Text::of("Marker visible to the tracker", "Marker im Sichtfeld des Trackers");
 pub(in crate::console) const CHECK_HANDLE: Text = Text::of("Position of the handle", "Position des Handgeräts");
 pub(in crate::console) const CHECK_WRENCH: Text = Text::of("Force at the wrist", "Kraft am Handgelenk");
 pub(in crate::console) const OPTIONS_TITLE: Text = Text::of("How to measure", "Messverfahren");
@@ -180,29 +181,31 @@ pub(in crate::console) const NO_ARM: Text = Text::of(
 );
 pub(in crate::console) const RECORD_TITLE: Text = Text::of("Do this now", "Jetzt");
 pub(in crate::console) const RECORD_HOVER: Text =
-    Text::of("What to do until all is recorded", "Was zu tun ist, bis alles aufgezeichnet ist");
+    Text::of("What to do until everything is recorded", "Was zu tun ist, bis alles aufgezeichnet ist");
 pub(in crate::console) const PROGRESS: Text = Text::of("Now", "Jetzt");
 pub(in crate::console) const COVERAGE: Text = Text::of("Recorded", "Aufgezeichnet");
-pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last one", "Letzte entfernen");
+pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove last", "Letzte entfernen");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
-pub(in crate::console) const GO_ON: Text = Text::of("Go on", "Weiter");
+pub(in crate::console) const GO_ON: Text = Text::of("Resume", "Fortsetzen");
 pub(in crate::console) const PAUSE_HOVER: Text =
-    Text::of("Records nothing until you go on", "Zeichnet nichts auf, bis es weitergeht");
+    Text::of("Records nothing until you press Resume", "Zeichnet nichts auf, bis Fortsetzen gedrückt wird");
 pub(in crate::console) const NEEDS_MORE: Text =
     Text::of("Not enough is recorded yet", "Noch nicht genug aufgezeichnet");
 pub(in crate::console) const NEEDS_RESULT: Text = Text::of(
-    "There is no result to save: go back and record more",
+    "No result to save: go back and record more",
     "Kein Ergebnis zum Speichern: zurückgehen und mehr aufzeichnen",
 );
 pub(in crate::console) const NO_RESULT_HOVER: Text =
     Text::of("Nothing could be computed from the recording", "Aus der Aufzeichnung ließ sich nichts berechnen");
 pub(in crate::console) const TOO_FEW: Text = Text::of(
-    "Too little is recorded: go back and record more",
+    "Too little recorded: go back and record more",
     "Zu wenig aufgezeichnet: zurückgehen und mehr \
      aufzeichnen",
 );
-pub(in crate::console) const VERDICT_HOVER: Text =
-    Text::of("Judged on data that were held out of the fit", "Beurteilt an Daten, die im Fit zurückgehalten wurden");
+pub(in crate::console) const VERDICT_HOVER: Text = Text::of(
+    "Judged on held-out data, which were not used for the fit",
+    "Beurteilt an Daten, die im Fit zurückgehalten wurden",
+);
 pub(in crate::console) const RECORDED_HOVER: Text = Text::of("How many were recorded", "Anzahl der Aufzeichnungen");
 pub(in crate::console) const LEFT_OUT: Text = Text::of("Left out", "Ausgelassen");
 pub(in crate::console) const LEFT_OUT_HOVER: Text =
@@ -215,53 +218,49 @@ pub(in crate::console) const HELD_OUT_HOVER: Text = Text::of(
 pub(in crate::console) const HELD_OUT_MAX: Text = Text::of("Largest held-out error", "Größter Testfehler");
 pub(in crate::console) const HELD_OUT_MAX_HOVER: Text =
     Text::of("The largest of these errors", "Der größte dieser Fehler");
-pub(in crate::console) const FITTED: Text = Text::of("Error in the fit", "Fitfehler");
+pub(in crate::console) const FITTED: Text = Text::of("Fit error", "Fitfehler");
 pub(in crate::console) const FITTED_HOVER: Text =
     Text::of("Root mean square error on the data of the fit", "Quadratisches Mittel der Fehler auf den Daten des Fits");
-pub(in crate::console) const UNCERTAINTY: Text = Text::of("Known to within", "Bekannt auf");
+pub(in crate::console) const UNCERTAINTY: Text = Text::of("Uncertainty", "Unsicherheit");
 pub(in crate::console) const UNCERTAINTY_HOVER: Text =
     Text::of("Half the length of the 95 % interval of the result", "Halbe Länge des 95-%-Intervalls des Ergebnisses");
 pub(in crate::console) const TOOL_MASS: Text = Text::of("Tool", "Instrument");
 pub(in crate::console) const TOOL_MASS_HOVER: Text =
-    Text::of("Mass that hangs on the sensor", "Masse, die am Sensor hängt");
-pub(in crate::console) const CHANGE_TITLE: Text =
-    Text::of("What changes in the rig file", "Änderungen in der Aufbaudatei");
+    Text::of("Mass carried by the sensor", "Masse, die am Sensor hängt");
+pub(in crate::console) const CHANGE_TITLE: Text = Text::of("Changes to the rig file", "Änderungen in der Aufbaudatei");
 pub(in crate::console) const CHANGE_HOVER: Text = Text::of(
-    "Nothing is changed before you save; afterwards the change can be undone",
+    "Nothing changes before you save; afterwards you can undo the change",
     "Vor dem Speichern ändert sich nichts; danach ist die Änderung umkehrbar",
 );
 pub(in crate::console) const NO_CHANGE: Text =
-    Text::of("Nothing: the rig file is right", "Keine: die Aufbaudatei stimmt");
+    Text::of("None: the rig file is correct", "Keine: die Aufbaudatei stimmt");
 pub(in crate::console) const WITHIN_UNCERTAINTY: Text = Text::of(
-    "The change is smaller than the uncertainty of the result: the rig file was right",
+    "The change is smaller than the uncertainty of the result: the rig file was correct",
     "Die Änderung ist kleiner als die Unsicherheit des Ergebnisses: die Aufbaudatei stimmte",
 );
 pub(in crate::console) const KEY: Text = Text::of("Key", "Schlüssel");
 pub(in crate::console) const BEFORE: Text = Text::of("Now", "Jetzt");
 pub(in crate::console) const AFTER: Text = Text::of("New", "Neu");
 pub(in crate::console) const CHANGE: Text = Text::of("Change", "Änderung");
-pub(in crate::console) const NOT_GIVEN: Text = Text::of("not given", "keine Angabe");
+pub(in crate::console) const NOT_GIVEN: Text = Text::of("not set", "nicht gesetzt");
 pub(in crate::console) const PROOF: Text = Text::of("Accepted on held-out data", "Auf Testdaten angenommen");
 pub(crate) const UNDO_TITLE: Text = Text::of("Undo", "Rückgängig");
 pub(crate) const UNDO_CARD_HOVER: Text = Text::of(
-    "The record keeps the values of before; they can be put back into the rig file",
+    "The record keeps the previous values; they can be restored in the rig file",
     "Das Protokoll bewahrt die vorigen Werte; sie lassen sich in die Aufbaudatei zurückschreiben",
 );
-pub(crate) const UNDO: Text = Text::of("Put the values of before back", "Vorige Werte wiederherstellen");
+pub(crate) const UNDO: Text = Text::of("Restore previous values", "Vorige Werte wiederherstellen");
 pub(in crate::console) const UNDONE: Text =
-    Text::of("The values of before are in the rig file again", "Die vorigen Werte stehen wieder in der Aufbaudatei");
+    Text::of("The previous values are in the rig file again", "Die vorigen Werte stehen wieder in der Aufbaudatei");
 
-/// What the technician is to hold.
 pub(in crate::console) fn hold(name: &str) -> String {
     told!("Hold still: {name}", "Stillhalten: {name}")
 }
 
-/// What is to be moved, and where to.
 pub(in crate::console) fn moved(what: &str, way: &str) -> String {
     told!("{what}: {way}, then hold still", "{what}: {way}, dann stillhalten")
 }
 
-/// How much is there, and what is missing most.
 pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&str>) -> String {
     let missing = missing.map_or_else(
         || word("complete", "vollständig").to_owned(),
@@ -270,19 +269,18 @@ pub(in crate::console) fn coverage(count: usize, units: &str, missing: Option<&s
     format!("{count} {units}; {missing}")
 }
 
-/// The picture of a change in one sentence.
 pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
     change.map_or_else(
         || {
             word(
-                "solid: found now; the rig file does not give it",
+                "solid: found now; not set in the rig file",
                 "durchgezogen: jetzt bestimmt; fehlt in der \
              Aufbaudatei",
             )
             .to_owned()
         },
         |[m, deg]| {
-            // A point has no angle, and a rotation no place.
+            // A point has no angle, and a rotation has no position.
             let moved = (m > 1e-9).then(|| told!("moved by {:.2} mm", "verschoben um {:.2} mm", m * 1e3));
             let turned = (deg > 1e-6).then(|| told!("turned by {deg:.2} deg", "gedreht um {deg:.2} deg"));
             let words: Vec<_> = moved.into_iter().chain(turned).collect();
@@ -291,12 +289,10 @@ pub(in crate::console) fn effect(change: Option<[f64; 2]>) -> String {
     )
 }
 
-/// Length of the scale.
 pub(in crate::console) fn scale(length_m: f64) -> String {
     told!("{} mm", "{} mm", (length_m * 1e4).round() / 10.0)
 }
 
-/// How the mount that was found compares with the rig file's.
 pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
     let verdict = if agrees {
         word("it agrees with the rig file", "stimmt mit der Aufbaudatei überein")
@@ -304,17 +300,15 @@ pub(in crate::console) fn mount_found(off_deg: f64, agrees: bool) -> String {
         word("the rig file is wrong", "die Aufbaudatei ist falsch")
     };
     told!(
-        "The mount that was found differs by {off_deg:.1} deg: {verdict}",
-        "Die bestimmte Montage weicht um {off_deg:.1} deg ab: {verdict}"
+        "The measured mount differs by {off_deg:.1} deg: {verdict}",
+        "Die gemessene Montage weicht um {off_deg:.1} deg ab: {verdict}"
     )
 }
 
-/// Which axes are exchanged.
 pub(in crate::console) fn mount_axes(axes: &str) -> String {
     told!("The sensor's x, y, z are the rig file's {axes}", "x, y, z des Sensors sind {axes} der Aufbaudatei")
 }
 
-/// The rig file that was written.
 pub(in crate::console) fn written(record: &std::path::Path, rig: &std::path::Path) -> String {
     told!("Saved: {}; in use: {}", "Gespeichert: {}; aktiv: {}", record.display(), rig.display())
 }

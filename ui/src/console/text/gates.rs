@@ -9,7 +9,7 @@ pub(in crate::console) const FREE_MOTION: Text = Text::of(
 pub(in crate::console) const NONE_DEVICE_MISSING: Text =
     Text::of("No force: a device is missing (see Devices)", "Keine Kraft: ein Gerät fehlt (siehe Geräte)");
 pub(in crate::console) const NONE_IDLE: Text =
-    Text::of("No force: the loop is idle, press Engage", "Keine Kraft: Regelung im Leerlauf, Koppeln drücken");
+    Text::of("No force: the loop is idle; press Engage", "Keine Kraft: Regelung im Leerlauf; Koppeln drücken");
 pub(in crate::console) const NONE_STARTING: Text =
     Text::of("No force: the loop has not started yet", "Keine Kraft: Regelung noch nicht gestartet");
 pub(in crate::console) const NONE_IDLE_THEN: Text =
@@ -41,7 +41,7 @@ pub(in crate::console) const LESS_ENERGY: Text = Text::of(
 );
 pub(in crate::console) const DEAD_BAND_OFF: Text = Text::of("off: force is kept", "aus: Kraft wird gehalten");
 pub(in crate::console) const LESS_GOVERNED: Text = Text::of(
-    "Reduced force: the handle runs away and no hand holds it. The force returns when a hand takes hold.",
+    "Reduced force: the handle is running away and no hand holds it. The force returns when a hand grips it.",
     "Weniger Kraft: das Handgerät läuft weg, keine Hand hält es. Die Kraft kehrt zurück, sobald eine Hand zugreift.",
 );
 pub(in crate::console) const GOVERNOR_OFF: Text = Text::of(
@@ -49,33 +49,30 @@ pub(in crate::console) const GOVERNOR_OFF: Text = Text::of(
     "aus: Handgerätemasse \
  unbekannt",
 );
-pub(in crate::console) const NEVER_ACTED: Text = Text::of("It has not acted so far", "Hat bisher nicht eingegriffen");
+pub(in crate::console) const NEVER_ACTED: Text = Text::of("Has not acted so far", "Hat bisher nicht eingegriffen");
 pub(in crate::console) const OPEN: Text = Text::of("open", "offen");
 pub(in crate::console) const CLOSED: Text = Text::of("closed", "geschlossen");
 pub(in crate::console) const LIMITING: Text = Text::of("limiting", "begrenzt");
 pub(in crate::console) const ENERGY_OFF: Text = Text::of("off", "aus");
 
-/// Switch: gates of which side.
 pub(in crate::console) fn gates_of(side: &str) -> String {
     told!("Shows why there is no force in the {side} hand", "Zeigt, warum in der Hand {side} keine Kraft ist")
 }
 
-/// Summary: no force, because that at the tip is not known; what its source is, or why it is unknown.
+/// `source`: source of the tip force, or the reason why it is unknown.
 pub(in crate::console) fn none_unknown(source: &str) -> String {
     told!("No force; tip force: {source}", "Keine Kraft; Kraft an der Spitze: {source}")
 }
 
-/// Summary: no force, and why the loop cannot be engaged; a sentence.
+/// `why`: a sentence.
 pub(in crate::console) fn none_idle_closed(why: &str) -> String {
     told!("No force: the loop is idle. {why}", "Keine Kraft: Regelung im Leerlauf. {why}")
 }
 
-/// Summary: a force is rendered.
 pub(in crate::console) fn rendered(rendered_n: f64) -> String {
     told!("Force in the hand: {rendered_n:.1} N", "Kraft in der Hand: {rendered_n:.1} N")
 }
 
-/// Summary: the dead band reduces the force.
 pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
     told!(
         "{withheld_n:.1} N not rendered: the hand is slower than the dead band",
@@ -83,12 +80,10 @@ pub(in crate::console) fn withheld_by_dead_band(withheld_n: f64) -> String {
     )
 }
 
-/// Summary: a gate reduces the force.
 pub(in crate::console) fn withheld(withheld_n: f64) -> String {
     told!("{withheld_n:.1} N not rendered", "{withheld_n:.1} N nicht dargestellt")
 }
 
-/// Summary: the force is still under way over the link.
 pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
     told!(
         "No force yet: the link delays it by {delay_ms:.0} ms",
@@ -96,22 +91,18 @@ pub(in crate::console) fn on_its_way(delay_ms: f64) -> String {
     )
 }
 
-/// Age at which a force has faded to zero.
 pub(in crate::console) fn zero_after(age_ms: f64) -> String {
     told!("zero after {age_ms:.0} ms", "null nach {age_ms:.0} ms")
 }
 
-/// How much of the force the governor keeps back.
 pub(in crate::console) fn governed(percent: f64) -> String {
     told!("{percent:.0} % withheld", "{percent:.0} % zurückgehalten")
 }
 
-/// Energy that the hand may still get back.
 pub(in crate::console) fn energy_left(stored_mj: f64) -> String {
     told!("{stored_mj:.0} mJ left", "{stored_mj:.0} mJ übrig")
 }
 
-/// How often a gate acted, and why it acted last.
 pub(in crate::console) fn acted(ticks: u64, percent: f64, why: &str) -> String {
     told!(
         "Acted in {ticks} ticks ({percent:.1} %); last reason: {why}",

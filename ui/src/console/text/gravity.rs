@@ -23,7 +23,7 @@ pub(in crate::console) const STEP_FREE_MOTION_HOVER: Text = Text::of(
 pub(in crate::console) const NEEDS_POSES: Text =
     Text::of("At least six poses are needed", "Mindestens sechs Posen sind nötig");
 pub(in crate::console) const NEEDS_MODEL: Text = Text::of(
-    "There is no model to test: go back and record more poses",
+    "No model to test: go back and record more poses",
     "Kein Modell zum Testen: zurückgehen und mehr Posen aufzeichnen",
 );
 pub(in crate::console) const NEEDS_FREE_MOTION: Text =
@@ -35,7 +35,7 @@ pub(in crate::console) const CHECKS_HOVER: Text = Text::of(
      aufgezeichnet",
 );
 pub(in crate::console) const CHECKS_TASK: Text = Text::of(
-    "Take the instrument out of the trocar and let go of it: nothing may touch the tool",
+    "Take the instrument out of the trocar and release it: nothing may touch the tool",
     "Instrument aus dem Trokar nehmen und loslassen: nichts darf es berühren",
 );
 pub(in crate::console) const OPTION_BY_ARM: Text = Text::of(
@@ -56,13 +56,13 @@ pub(in crate::console) const OPTION_FLIP_IMU_HOVER: Text = Text::of(
     "Manche Treiber melden die Schwerkraft (unten) statt der Kraft, die den Sensor trägt (oben). Aufgezeichnete Posen \
      bleiben erhalten.",
 );
-pub(in crate::console) const POSE_TITLE: Text = Text::of("Take this pose", "Pose einnehmen");
+pub(in crate::console) const POSE_TITLE: Text = Text::of("Move to this pose", "Pose einnehmen");
 pub(in crate::console) const POSE_HOVER: Text = Text::of(
-    "Turn the tool as the outline shows, let go of it, and wait until the bar is full",
+    "Turn the tool as the outline shows, release it, and wait until the bar is full",
     "Instrument drehen, wie der Umriss zeigt, loslassen und warten, bis der Balken voll ist",
 );
 pub(in crate::console) const ALL_POSES_RECORDED: Text =
-    Text::of("All poses are recorded: go on to the result", "Alle Posen aufgezeichnet: weiter zum Ergebnis");
+    Text::of("All poses recorded: continue to the result", "Alle Posen aufgezeichnet: weiter zum Ergebnis");
 pub(in crate::console) const POSE_PROGRESS: Text = Text::of("Pose", "Pose");
 pub(in crate::console) const DIRECTIONS_PICTURE: Text = Text::of("Directions of gravity", "Schwerkraftrichtungen");
 pub(in crate::console) const DIRECTIONS: Text = Text::of("Directions", "Richtungen");
@@ -77,7 +77,7 @@ pub(in crate::console) const REMOVE_LAST: Text = Text::of("Remove the last pose"
 pub(in crate::console) const NO_RESULT_HOVER: Text =
     Text::of("No model could be fitted to the poses", "Kein Modell ließ sich an die Posen anpassen");
 pub(in crate::console) const NO_POSES: Text =
-    Text::of("There are no poses yet: go back and record some", "Noch keine Posen: zurückgehen und aufzeichnen");
+    Text::of("No poses yet: go back and record some", "Noch keine Posen: zurückgehen und aufzeichnen");
 pub(in crate::console) const FREE_MOTION_TITLE: Text = Text::of("Move the tool freely", "Instrument frei bewegen");
 pub(in crate::console) const FREE_MOTION_HOVER: Text = Text::of(
     "Force that remains after gravity is removed. Nothing may touch the tool; it should read near 0 N.",
@@ -89,9 +89,9 @@ pub(in crate::console) const FREE_MOTION_TASK: Text = Text::of(
 );
 pub(in crate::console) const MEAN: Text = Text::of("Mean", "Mittel");
 pub(in crate::console) const MEAN_HOVER: Text =
-    Text::of("Mean size of the remaining force", "Mittlerer Betrag der Restkraft");
+    Text::of("Mean magnitude of the remaining force", "Mittlerer Betrag der Restkraft");
 pub(in crate::console) const P95_HOVER: Text = Text::of(
-    "95 % of all samples, including their noise, are below this",
+    "95 % of all samples, noise included, are below this value",
     "95 % aller Messwerte, samt Rauschen, liegen darunter",
 );
 pub(in crate::console) const TILT: Text = Text::of("Tilt covered", "Neigung abgedeckt");
@@ -109,7 +109,7 @@ pub(in crate::console) const PHASE_NO_SAMPLE: Text =
 pub(in crate::console) const PHASE_MOVING: Text =
     Text::of("moving; hold the tool still in this pose", "bewegt sich; Instrument in dieser Pose stillhalten");
 pub(in crate::console) const PHASE_DISTURBED: Text = Text::of(
-    "the force changes although the tool is still: something touches it; let go",
+    "the force changes although the tool is still: something touches it; release it",
     "die Kraft ändert sich, obwohl das Instrument ruht: etwas berührt es; loslassen",
 );
 pub(in crate::console) const PHASE_SAME_POSE: Text = Text::of(
@@ -119,12 +119,12 @@ pub(in crate::console) const PHASE_SAME_POSE: Text = Text::of(
 pub(in crate::console) const PHASE_RECORDING: Text = Text::of("still; recording", "ruht; wird aufgezeichnet");
 pub(in crate::console) const COVERAGE: Text = Text::of("Coverage", "Abdeckung");
 pub(in crate::console) const COVERAGE_HOVER: Text = Text::of(
-    "Share of all directions that have a pose within 45 degrees, 0 to 1",
+    "Fraction of all directions that have a pose within 45 degrees, 0 to 1",
     "Anteil aller Richtungen mit einer Pose innerhalb von 45 Grad, 0 bis 1",
 );
 pub(in crate::console) const MASS: Text = Text::of("Mass", "Masse");
 pub(in crate::console) const MASS_HOVER: Text =
-    Text::of("Mass of everything mounted on the sensor", "Masse von allem, was am Sensor montiert ist");
+    Text::of("Total mass mounted on the sensor", "Masse von allem, was am Sensor montiert ist");
 pub(in crate::console) const VERDICT_HOVER: Text = Text::of(
     "Tested on poses that were not used to fit the model",
     "Getestet an Posen, die nicht in den Fit eingingen",
@@ -157,20 +157,17 @@ pub(in crate::console) const P95: Text = Text::of("95 % below", "95 % unter");
 pub(in crate::console) const UNDETERMINED: Text = Text::of("undetermined", "unbestimmt");
 pub(in crate::console) const LARGEST: Text = Text::of("largest", "größter");
 
-/// A pose was recorded.
 pub(in crate::console) fn pose_taken(number: usize) -> String {
     told!("pose {number} recorded", "Pose {number} aufgezeichnet")
 }
 
-/// A pose was refused because the tool was touched.
 pub(in crate::console) fn touched(by_n: f64) -> String {
     told!(
-        "{by_n:.1} N too much: something touches the tool; let go",
+        "{by_n:.1} N too much: something touches the tool; release it",
         "{by_n:.1} N zu viel: etwas berührt das Instrument; loslassen"
     )
 }
 
-/// The tool was touched while poses were recorded.
 pub(in crate::console) fn was_touched(seconds: f64) -> String {
     told!(
         "Something touched the tool for {seconds:.0} s while it was still",
@@ -179,27 +176,24 @@ pub(in crate::console) fn was_touched(seconds: f64) -> String {
 }
 
 pub(in crate::console) const WAS_TOUCHED_HOVER: Text = Text::of(
-    "The force changed although the tool did not turn. If the verdict is bad, let go of the tool and press Start over",
+    "The force changed although the tool did not turn. If the verdict is bad, release the tool and press Start \
+     over",
     "Die Kraft änderte sich, ohne dass sich das Instrument drehte. Bei schlechtem Urteil Instrument loslassen und Neu \
      beginnen drücken",
 );
 
-/// Poses left out of the fit.
 pub(in crate::console) fn left_out(numbers: &str) -> String {
     told!("poses {numbers}", "Posen {numbers}")
 }
 
-/// Number of recorded directions.
 pub(in crate::console) fn recorded_of(recorded: usize, asked: usize) -> String {
     told!("{recorded} of {asked} recorded", "{recorded} von {asked} aufgezeichnet")
 }
 
-/// A force and its limit.
 pub(in crate::console) fn of_allowed(force_n: f64, limit_n: f64) -> String {
     told!("{force_n:.2} N of {limit_n} N allowed", "{force_n:.2} N von {limit_n} N erlaubt")
 }
 
-/// The chosen model.
 pub(in crate::console) fn chosen(model: &str) -> String {
     told!("{model} (chosen)", "{model} (gewählt)")
 }

@@ -4,10 +4,9 @@ use crate::language::{Text, told};
 
 pub(in crate::console) const STEP_BACK: Text = Text::of("Step back", "Schritt zurück");
 pub(in crate::console) const NEXT_STEP: Text = Text::of("Next step", "Nächster Schritt");
-pub(in crate::console) const BEGIN: Text = Text::of("Begin", "Beginnen");
-pub(in crate::console) const SKIP_THE_TOUR: Text = Text::of("Skip the tour", "Überspringen");
+pub(in crate::console) const BEGIN: Text = Text::of("Start", "Beginnen");
+pub(in crate::console) const SKIP_THE_TOUR: Text = Text::of("Skip tour", "Überspringen");
 
-/// Position within the tour.
 pub(in crate::console) fn step_of(step: usize, steps: usize) -> String {
     told!("{step} of {steps}", "{step} von {steps}")
 }
@@ -17,8 +16,9 @@ pub(in crate::console) const TOUR: [(Text, Text); 4] = [
     (
         Text::of("Three views of one loop", "Drei Ansichten einer Regelung"),
         Text::of(
-            "Surgeon, Technician and Demo: click above, or press F1, F2 or F3. A view changes only what is shown, \
-             never what the control loop does. Only Demo changes the mode by itself, and only on simulated rigs.",
+            "Surgeon, Technician and Demo: click above, or press F1, F2 or F3. A view changes only the display, \
+             never the behaviour of the control loop. Only Demo changes the mode automatically, and only on \
+             simulated rigs.",
             "Chirurg, Technik und Demo: oben klicken oder F1, F2, F3 drücken. Eine Ansicht ändert nur die Anzeige, nie \
              das Verhalten der Regelung. Nur Demo ändert den Modus selbsttätig, und nur bei simulierten Aufbauten.",
         ),
@@ -26,8 +26,8 @@ pub(in crate::console) const TOUR: [(Text, Text); 4] = [
     (
         Text::of("The stop", "Der Halt"),
         Text::of(
-            "Stop is always at the top right, and on Space and Escape. It switches force and motion off at once and \
-             stays on. To start again, press Release stop, then Engage.",
+            "Stop is always at the top right, and on Space and Escape. It switches force and motion off at once, \
+             and they stay off. To restart, press Release stop, then Engage.",
             "Halt ist immer oben rechts und auf Leertaste und Escape. Er schaltet Kraft und Bewegung sofort ab, \
              und das bleibt so. Neu starten: Halt lösen, dann koppeln.",
         ),
@@ -58,10 +58,10 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
     (
         Text::of("Anchored", "Verankert"),
         Text::of(
-            "Our mode: the last measured force, corrected for the hand's motion since then as far as earlier \
-             corrections reduced the error.",
-            "Unser Modus: die letzte gemessene Kraft, korrigiert um die Handbewegung seither, soweit frühere \
-             Korrekturen den Fehler verringerten.",
+            "A mode of this console: the last measured force, corrected for the hand's motion since then as far \
+             as earlier corrections reduced the error.",
+            "Ein Modus dieser Konsole: die letzte gemessene Kraft, korrigiert um die Handbewegung seither, \
+             soweit frühere Korrekturen den Fehler verringerten.",
         ),
     ),
     (
@@ -78,7 +78,7 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
     (
         Text::of("Condition", "Kondition"),
         Text::of(
-            "How well the columns of a model can be told apart; 1 is perfect, above 10 000 hardly at all.",
+            "How well the columns of a model can be distinguished; 1 is perfect, above 10 000 hardly at all.",
             "Wie gut die Spalten eines Modells unterscheidbar sind; 1 ist perfekt, über 10 000 kaum noch.",
         ),
     ),
@@ -92,7 +92,7 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
     (
         Text::of("Dead band", "Totband"),
         Text::of(
-            "Speed of the hand below which no force is rendered: at standstill an impedance cannot be identified.",
+            "Hand speed below which no force is rendered: at standstill an impedance cannot be identified.",
             "Handgeschwindigkeit, unter der keine Kraft dargestellt wird: im Stillstand ist eine Impedanz nicht \
              identifizierbar.",
         ),
@@ -132,7 +132,7 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
     (
         Text::of("Gain", "Verstärkung"),
         Text::of(
-            "Ratio of the force in the hand to the force that the mode asks for, no unit.",
+            "Ratio of the force in the hand to the force that the mode requests, no unit.",
             "Verhältnis der Kraft in der Hand zu der vom Modus verlangten, ohne Einheit.",
         ),
     ),
@@ -151,7 +151,7 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
         ),
     ),
     (
-        Text::of("Horizon", "Horizont"),
+        Text::of("Prediction horizon", "Vorhersagehorizont"),
         Text::of(
             "The link's delay: how far ahead of its newest data the leader predicts the force.",
             "Die Verzögerung der Verbindung: wie weit über seine neuesten Daten hinaus das Führungsgerät die Kraft \
@@ -168,8 +168,8 @@ pub(in crate::console) const GLOSSARY: [(Text, Text); 25] = [
     (
         Text::of("Interlock", "Verriegelung"),
         Text::of(
-            "The state machine that permits force and motion; nothing else does.",
-            "Der Zustandsautomat, der Kraft und Bewegung freigibt; nichts sonst tut das.",
+            "The state machine that permits force and motion, and the only part that does.",
+            "Der Zustandsautomat, der als einziger Kraft und Bewegung freigibt.",
         ),
     ),
     (

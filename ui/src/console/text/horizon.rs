@@ -1,4 +1,4 @@
-//! The panel that compares the prediction errors of the modes.
+//! The Prediction error panel, which compares the modes.
 
 use crate::language::{Text, told};
 
@@ -6,14 +6,13 @@ pub(in crate::console) const LAST_3_MIN: Text = Text::of("last 3 min", "letzte 3
 pub(in crate::console) const REFERENCE: Text = Text::of("reference", "Referenz");
 pub(in crate::console) const COMPARE: Text = Text::of("Compare all modes", "Alle Modi vergleichen");
 pub(in crate::console) const COMPARE_HOVER: Text = Text::of(
-    "Compute every mode on the same samples and show its error. Otherwise only the mode in use is computed, which \
-    takes less time. The force in the hand does not change.",
-    "Jeden Modus auf denselben Messwerten rechnen und seinen Fehler zeigen. Sonst wird nur der aktive Modus gerechnet, \
-     das braucht weniger Zeit. Die Kraft in der Hand ändert sich nicht.",
+    "Computes every mode on the same samples and shows its error. Otherwise only the mode in use is computed, \
+     which takes less time. The force in the hand does not change.",
+    "Berechnet jeden Modus auf denselben Messwerten und zeigt seinen Fehler. Sonst wird nur der aktive Modus \
+     berechnet, das braucht weniger Zeit. Die Kraft in der Hand ändert sich nicht.",
 );
 pub(in crate::console) const IN_USE: Text = Text::of(" (in use)", " (aktiv)");
 
-/// The prediction horizon, and the meaning of the line in the bars.
 pub(in crate::console) fn ahead(delay_ms: f64) -> String {
     told!(
         "Mean error {delay_ms:.0} ms ahead, last seconds; line: delayed DFR",
@@ -29,12 +28,10 @@ pub(in crate::console) fn trend(seconds: usize, mode: &str, error: &str, dfr: &s
     )
 }
 
-/// The name of the trend.
 pub(in crate::console) fn trend_name(trend: &str) -> String {
     told!("Error over the last minutes. {trend}", "Fehler der letzten Minuten. {trend}")
 }
 
-/// The meaning of the trend.
 pub(in crate::console) fn trend_meaning(trend: &str) -> String {
     told!(
         "{trend}\nMean prediction error (N) of each second, for up to three minutes",

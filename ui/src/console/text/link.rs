@@ -1,4 +1,4 @@
-//! The line to the machine with the arm.
+//! The link to the machine with the arm.
 
 use crate::language::Text;
 
@@ -8,22 +8,22 @@ pub(in crate::console) const LINK: Text = Text::of(
  Folgearms",
 );
 pub(in crate::console) const ONE_MACHINE: Text =
-    Text::of("Handle and arm are at this machine", "Handgerät und Arm sind an diesem Rechner");
+    Text::of("Handle and arm are connected to this machine", "Handgerät und Arm sind an diesem Rechner");
 pub(in crate::console) const HOW_TWO: Text = Text::of(
-    "For an arm at another machine start nima follower there and nima console --follower HOST here. The panel Feedback \
-     sets the delay of the simulated link.",
+    "For an arm at another machine, start nima follower there and nima console --follower HOST here. The \
+     Feedback panel sets the delay of the simulated link.",
     "Für einen Arm an einem anderen Rechner dort nima follower und hier nima console --follower HOST starten. Die \
      Verzögerung der simulierten Verbindung stellt das Panel Rückkopplung ein.",
 );
 pub(in crate::console) const NOT_IN_SESSIONS: Text =
-    Text::of("A session does not hold the figures of the network", "Eine Sitzung enthält keine Netzwerkwerte");
+    Text::of("A session does not contain the network statistics", "Eine Sitzung enthält keine Netzwerkwerte");
 pub(in crate::console) const DELAY_IS_MEASURED: Text = Text::of(
-    "The delay is that of the network to the other machine, as measured; it cannot be set",
+    "Measured delay of the network to the other machine; it cannot be set",
     "Gemessene Verzögerung des Netzes zum anderen Rechner; nicht einstellbar",
 );
 pub(in crate::console) const ONE_RIG: Text = Text::of(
-    "This console uses the arm at another machine: close it, and start it without --follower to use another rig or \
-     scene",
-    "Diese Konsole nutzt den Arm an einem anderen Rechner: für einen anderen Aufbau oder eine andere Szene schließen \
-     und ohne --follower starten",
+    "This console uses the arm at another machine. To use another rig or scene, close the console and start it \
+     without --follower.",
+    "Diese Konsole nutzt den Arm an einem anderen Rechner. Für einen anderen Aufbau oder eine andere Szene die \
+     Konsole schließen und ohne --follower starten.",
 );

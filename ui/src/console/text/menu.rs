@@ -3,14 +3,14 @@
 use crate::language::Text;
 
 pub(in crate::console) const VIEW: Text = Text::of("View", "Ansicht");
-pub(in crate::console) const PALETTE: Text = Text::of("Palette", "Farben");
+pub(in crate::console) const PALETTE: Text = Text::of("Colours", "Farben");
 pub(in crate::console) const DARK: Text = Text::of("Dark", "Dunkel");
 pub(in crate::console) const LIGHT: Text = Text::of("Light", "Hell");
 pub(in crate::console) const LANGUAGE: Text = Text::of("Language", "Sprache");
 pub(in crate::console) const SIZE: Text =
     Text::of("Text and control size (Ctrl + and Ctrl -)", "Größe von Text und Elementen (Ctrl + und Ctrl -)");
 pub(in crate::console) const SIZE_NOTE: Text =
-    Text::of("Limited to what fits into this window", "Soweit es in dieses Fenster passt");
+    Text::of("Limited to what fits in this window", "Soweit es in dieses Fenster passt");
 pub(in crate::console) const VIEW_HOVER: Text = Text::of(
     "Light or dark colours, size, sound, alarms, glossary, tour and panels",
     "Helle oder dunkle Farben, Größe, Ton, Alarme, Glossar, Rundgang und Panels",
@@ -20,13 +20,13 @@ pub(in crate::console) const SOUND_HOVER: Text = Text::of(
     "Zehn Töne bei Alarm, drei bei Warnung, wiederholt bis zum Quittieren",
 );
 pub(in crate::console) const SOUND: Text = Text::of("Alarm sound", "Alarmton");
-pub(in crate::console) const PICTURE: Text = Text::of("Endoscope's picture", "Endoskopbild");
+pub(in crate::console) const PICTURE: Text = Text::of("Endoscope image", "Endoskopbild");
 pub(in crate::console) const BRIGHTNESS: Text = Text::of("Brightness", "Helligkeit");
 pub(in crate::console) const CONTRAST: Text = Text::of("Contrast", "Kontrast");
 pub(in crate::console) const GAMMA: Text = Text::of("Gamma", "Gamma");
 pub(in crate::console) const CROP: Text = Text::of("Crop", "Zuschnitt");
 pub(in crate::console) const CROP_HOVER: Text = Text::of(
-    "What is cut off at the edges of the picture as it comes: left, top, right, bottom",
+    "Amount cut off at the edges of the camera image: left, top, right, bottom",
     "Was an den Rändern des Originalbilds wegfällt: links, oben, rechts, unten",
 );
 pub(in crate::console) const EDGES: [Text; 4] = [
@@ -36,21 +36,21 @@ pub(in crate::console) const EDGES: [Text; 4] = [
     Text::of("Crop at the bottom", "Unten abschneiden"),
 ];
 pub(in crate::console) const FORCES_OF_NOW: Text =
-    Text::of("Draw forces of now, ahead of the picture", "Kräfte von jetzt zeichnen, dem Bild voraus");
+    Text::of("Draw current forces, ahead of the image", "Aktuelle Kräfte zeichnen, dem Bild voraus");
 pub(in crate::console) const FORCES_OF_NOW_HOVER: Text = Text::of(
-    "At the tips as they are now. Otherwise they are those of the picture's moment, and lie on the tips that are seen.",
-    "An den Spitzen, wo sie jetzt sind. Sonst gehören die Kräfte zum Zeitpunkt des Bildes und liegen auf den \
-     sichtbaren Spitzen.",
+    "Draws the forces at the current tip positions. Otherwise the forces belong to the time of the image and are \
+     drawn on the visible tips.",
+    "Zeichnet die Kräfte an den jetzigen Orten der Spitzen. Sonst gehören die Kräfte zum Zeitpunkt des Bildes \
+     und liegen auf den sichtbaren Spitzen.",
 );
-pub(in crate::console) const PICTURE_PLAIN: Text = Text::of("Show the picture as it comes", "Originalbild zeigen");
+pub(in crate::console) const PICTURE_PLAIN: Text = Text::of("Show the unmodified image", "Originalbild zeigen");
 pub(in crate::console) const PICTURE_PLAIN_HOVER: Text = Text::of(
     "With the camera's own brightness and colours, not cropped",
     "Mit Helligkeit und Farben der Kamera, nicht zugeschnitten",
 );
-pub(in crate::console) const RECORDS_PICTURE: Text =
-    Text::of("Record the endoscope's picture", "Endoskopbild aufzeichnen");
+pub(in crate::console) const RECORDS_PICTURE: Text = Text::of("Record the endoscope image", "Endoskopbild aufzeichnen");
 pub(in crate::console) const RECORDS_PICTURE_HOVER: Text = Text::of(
-    "In sessions, as the camera sends it: some 60 to 200 MB a minute more",
+    "In sessions, as the camera sends it: about 60 to 200 MB more per minute",
     "In Sitzungen, so wie die Kamera es sendet: etwa 60 bis 200 MB mehr pro Minute",
 );
 pub(in crate::console) const PANELS: Text = Text::of("Panels", "Panels");
@@ -62,4 +62,4 @@ pub(in crate::console) const PANEL_OPEN_HOVER: Text = Text::of("Open: click to c
 pub(in crate::console) const PANEL_CLOSED_HOVER: Text =
     Text::of("Closed: click to open it where it was", "Geschlossen: Klick öffnet es am alten Platz");
 pub(in crate::console) const RESET_LAYOUT_HOVER: Text =
-    Text::of("Opens all panels at their original places", "Öffnet alle Panels am ursprünglichen Platz");
+    Text::of("Opens all panels in their original positions", "Öffnet alle Panels am ursprünglichen Platz");

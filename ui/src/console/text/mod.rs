@@ -1,10 +1,10 @@
 //! All texts of the window, one module per part of it, so that a translation has one place to work in. Texts for values
 //! that the libraries report (faults, gate reasons, verdicts) are in `crate::words`, which the command line shares.
 //!
-//! Every text stands in each language side by side (`crate::language`): constants as [`Text`](crate::language::Text), sentences with values as
-//! small functions that choose with `told!`. A text that lacks a language does not compile. Constants are named by role. Panels contain no
-//! texts of their own. A message library (fluent-bundle 0.16) was tried on the feedback panel and not adopted: a misspelt name or a missing
-//! argument appears on the screen, where the compiler refuses an unknown constant; `maximumFractionDigits` is ignored
+//! Each text is here in both languages (`crate::language`): constants as [`Text`](crate::language::Text), sentences with values as small
+//! functions that use `told!`. A text without one of the languages does not compile. Constants are named by role. Panels contain no
+//! texts. A message library (fluent-bundle 0.16) was tried on the Feedback panel and not adopted: it shows a misspelt name or a missing
+//! argument on the screen, which the compiler rejects here; `maximumFractionDigits` is ignored
 //! (0.8349 instead of 0.83); a sentence with two numbers takes 13 us instead of 0.8 us in each frame; and its 12 crates
 //! add 23 s of processor time to a clean build. Its advantage, plural rules, would help three sentences.
 

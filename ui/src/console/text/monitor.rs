@@ -1,50 +1,46 @@
-//! A rig at another machine that is only watched.
+//! A rig at another machine, shown without control.
 
 use crate::language::{Text, told};
 
 pub(in crate::console) const WATCHING: Text = Text::of("WATCHING", "NUR ANSICHT");
 pub(in crate::console) const WATCHING_HOVER: Text = Text::of(
-    "This window shows a rig at another machine, about a tenth of a second late; nothing in it can act on the rig",
+    "This window shows a rig at another machine, about 0.1 s late; it cannot control the rig",
     "Dieses Fenster zeigt einen Aufbau an einem anderen Rechner, etwa 0.1 s verspätet; es kann nicht auf ihn einwirken",
 );
 pub(in crate::console) const BLOCKED: Text =
-    Text::of("Only at the rig's own console", "Nur an der Konsole des Aufbaus");
+    Text::of("Only on the rig's own console", "Nur an der Konsole des Aufbaus");
 pub(in crate::console) const CONNECTING: Text = Text::of("Connecting to the rig", "Verbinden mit dem Aufbau");
 pub(in crate::console) const RESTS: Text = Text::of(
-    "The rig is shared, and no loop runs there now",
+    "The rig is shared, but no loop is running there",
     "Der Aufbau ist freigegeben, aber dort läuft keine \
      Regelung",
 );
 pub(in crate::console) const NO_LINK: Text = Text::of(
-    "The figures of the network are on the rig's own console",
+    "The network statistics are on the rig's own console",
     "Die Netzwerkwerte stehen an der Konsole des Aufbaus",
 );
 pub(in crate::console) const SIMULATED: Text =
     Text::of("This rig has no devices: everything is simulated", "Dieser Aufbau hat keine Geräte: alles ist simuliert");
 pub(in crate::console) const NOT_OF_DEVICES: Text = Text::of(
-    "What each device counts and measures on its own, and the calibrations, are on the rig's own console",
+    "The counters and readings of the devices, and the calibrations, are on the rig's own console",
     "Zähler und Messwerte der Geräte sowie die Kalibrierungen stehen an der Konsole des Aufbaus",
 );
 
-/// The title of the window.
 pub(in crate::console) fn title(rig: &str) -> String {
     told!("{rig}: watching", "{rig}: nur Ansicht")
 }
 
-/// Which rig.
 pub(in crate::console) fn rig_and_scene(rig: &str, scene: &str) -> String {
     format!("{rig}, {scene}")
 }
 
-/// Nothing has come for some time.
 pub(in crate::console) fn silent(seconds: f64) -> String {
     told!(
-        "Nothing from the rig for {seconds:.0} s: what is shown is old",
+        "No data from the rig for {seconds:.0} s: the display is out of date",
         "Seit {seconds:.0} s nichts vom Aufbau: die Anzeige ist veraltet"
     )
 }
 
-/// The alarm at the rig.
 pub(in crate::console) fn alarm(priority: &str, cause: &str) -> String {
     format!("{priority}: {cause}")
 }

@@ -4,18 +4,18 @@ use crate::language::{Text, told, word};
 
 pub(in crate::console) const TITLE: Text = Text::of("All calibrations", "Alle Kalibrierungen");
 pub(in crate::console) const MEANING: Text = Text::of(
-    "Of every arm: when each was made, its verdict, what has changed since then, and a button that makes it",
+    "For every arm: date, verdict and later changes of each calibration, and a button to calibrate",
     "Für jeden Arm: Datum, Urteil, Änderungen seither und eine Schaltfläche zum Kalibrieren",
 );
 pub(in crate::console) const OPEN: Text = Text::of("All calibrations…", "Alle Kalibrierungen…");
 pub(in crate::console) const CALIBRATION: Text = Text::of("Calibration", "Kalibrierung");
-pub(in crate::console) const MADE: Text = Text::of("Made", "Erstellt");
+pub(in crate::console) const MADE: Text = Text::of("Created", "Erstellt");
 pub(in crate::console) const VERDICT: Text = Text::of("Verdict", "Urteil");
 pub(in crate::console) const SINCE: Text = Text::of("Since then", "Seither");
 pub(in crate::console) const MAKE: Text = Text::of("Calibrate", "Kalibrieren");
-pub(in crate::console) const REDO: Text = Text::of("Redo", "Wiederholen");
+pub(in crate::console) const REDO: Text = Text::of("Recalibrate", "Neu kalibrieren");
 pub(in crate::console) const NEVER: Text = Text::of("not calibrated", "nicht kalibriert");
-pub(in crate::console) const NOT_WATCHED: Text = Text::of("not watched", "nicht überwacht");
+pub(in crate::console) const NOT_WATCHED: Text = Text::of("not monitored", "nicht überwacht");
 pub(in crate::console) const FOR_TRAINING_ONLY: Text = Text::of(
     "used for training only",
     "nur für das Training \
@@ -25,35 +25,31 @@ pub(in crate::console) const NOT_USED: Text =
     Text::of("used for less than 10 s since the start", "seit dem Start unter 10 s genutzt");
 pub(in crate::console) const IN_FILE: Text = Text::of("in the rig file", "in der Aufbaudatei");
 pub(in crate::console) const OTHER_IN_FILE: Text =
-    Text::of("the rig file has other values now", "die Aufbaudatei hat jetzt andere Werte");
+    Text::of("the rig file now has other values", "die Aufbaudatei hat jetzt andere Werte");
 pub(in crate::console) const UNCHECKED: Text = Text::of("trained but not checked", "trainiert, aber nicht geprüft");
 pub(in crate::console) const HANDLE: Text = Text::of("View, handle", "Bildlage, Handgerät");
 pub(in crate::console) const FUTURE: Text = Text::of("in the future", "in der Zukunft");
 
-/// Accessible name of a button that makes a calibration.
+/// Accessible name of a button that starts a calibration.
 pub(in crate::console) fn button(verb: &str, arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
     told!("{verb} {arm} arm, {calibration}", "{verb}: Arm {after}, {calibration}")
 }
 
-/// Sensor and tool above an arm's lines.
 pub(in crate::console) fn of_arm(arm: &str, sensor: &str, tool: &str) -> String {
     let after = arm.to_lowercase();
     told!("{arm} arm: sensor {sensor}, {tool}", "Arm {after}: Sensor {sensor}, {tool}")
 }
 
-/// An arm whose sensor has not told who it is.
 pub(in crate::console) fn of_unknown(arm: &str, why: &str) -> String {
     let after = arm.to_lowercase();
     told!("{arm} arm: {why}", "Arm {after}: {why}")
 }
 
-/// When it was made.
 pub(in crate::console) fn made(day: &str, age: &str) -> String {
     format!("{day}, {age}")
 }
 
-/// Age in days.
 pub(in crate::console) fn days(days: u64) -> String {
     match days {
         0 => word("less than a day old", "weniger als einen Tag alt").to_owned(),
@@ -62,7 +58,6 @@ pub(in crate::console) fn days(days: u64) -> String {
     }
 }
 
-/// A verdict with the error on held-out data.
 pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
     if error.is_empty() {
         verdict.to_owned()
@@ -71,17 +66,15 @@ pub(in crate::console) fn verdict(verdict: &str, error: &str) -> String {
     }
 }
 
-/// A verdict that somebody has overridden.
 pub(in crate::console) fn overridden(verdict: &str, name: &str) -> String {
-    told!("{verdict}, kept by {name}", "{verdict}, übernommen von {name}")
+    told!("{verdict}, accepted by {name}", "{verdict}, übernommen von {name}")
 }
 
-/// What the last ready check has found.
 pub(in crate::console) fn checked(day: &str, found: &str) -> String {
-    told!("ready check of {day}: {found}", "Startprüfung vom {day}: {found}")
+    told!("ready check on {day}: {found}", "Startprüfung vom {day}: {found}")
 }
 
-/// How much of the time with force a network was outside its training data, as shares; what to do if that is much.
+/// Fractions of the time with force, 0 to 1, in which the network was outside its training data and not used.
 pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     let shares = told!(
         "outside its training {:.0} % of the time, not used {:.0} %",
@@ -91,18 +84,16 @@ pub(in crate::console) fn in_use(outside: f64, without: f64) -> String {
     );
     let much = without >= 0.02 || outside >= 0.3;
     if much {
-        told!("{shares}: record more where you work", "{shares}: im Arbeitsbereich mehr aufzeichnen")
+        told!("{shares}: record more data where you work", "{shares}: im Arbeitsbereich mehr aufzeichnen")
     } else {
         shares
     }
 }
 
-/// A force.
 pub(in crate::console) fn newton(newton: f64) -> String {
     format!("{newton:.3} N")
 }
 
-/// A value with its limit.
 pub(in crate::console) fn within(value: f64, limit: f64, unit: &str) -> String {
     told!("{value:.2} {unit}, limit {limit:.2}", "{value:.2} {unit}, Grenze {limit:.2}")
 }

@@ -6,7 +6,7 @@ pub(in crate::console) const SURGEON: Text = Text::of("Surgeon", "Chirurg");
 pub(in crate::console) const TECHNICIAN: Text = Text::of("Technician", "Technik");
 pub(in crate::console) const DEMO: Text = Text::of("Demo", "Demo");
 pub(in crate::console) const SURGEON_HOVER: Text = Text::of(
-    "The endoscope's view, the forces with their ceiling, the gain and the alarms",
+    "The endoscope image, the forces with their ceiling, the gain and the alarms",
     "Endoskopbild, Kräfte mit Höchstkraft, Verstärkung und Alarme",
 );
 pub(in crate::console) const TECHNICIAN_HOVER: Text = Text::of(
@@ -21,87 +21,88 @@ pub(in crate::console) const SWITCH_DISABLED_HOVER: Text =
     Text::of("Close the wizard or the study first", "Erst den Assistenten oder die Studie schließen");
 pub(in crate::console) const DEMO_START: Text = Text::of("What you see", "Was zu sehen ist");
 pub(in crate::console) const DEMO_START_CAPTION: Text = Text::of(
-    "A hand moves an instrument from peg to peg and presses it into soft tissue. The ivory arrow is the \
-    force measured at the instrument, the blue arrow is the force that the hand feels. The link delays \
-    all data by 50 ms.",
+    "A hand moves an instrument from peg to peg and presses it into soft tissue. The ivory arrow is the force \
+     measured at the instrument; the blue arrow is the force that the hand feels. The link delays all data by 50 \
+     ms.",
     "Eine Hand führt ein Instrument von Stift zu Stift und drückt es in weiches Gewebe. Der elfenbeinfarbene Pfeil ist \
      die am Instrument gemessene Kraft, der blaue die Kraft, die die Hand spürt. Die Verbindung verzögert alle Daten \
      um 50 ms.",
 );
 pub(in crate::console) const DEMO_DIRECT: Text = Text::of("Direct reflection", "Direkte Kraftreflexion");
 pub(in crate::console) const DEMO_DIRECT_CAPTION: Text = Text::of(
-    "The delay is now 300 ms, and the measured force is sent as it is: the blue arrow lags behind the \
-    ivory arrow. The hand feels contacts that are already over and misses contacts that have just begun.",
+    "The delay is now 300 ms, and the measured force is sent unmodified: the blue arrow lags behind the ivory \
+     arrow. The hand feels contacts that are already over and misses contacts that have just begun.",
     "Die Verzögerung ist jetzt 300 ms, und die gemessene Kraft kommt unverändert an: der blaue Pfeil läuft dem \
      elfenbeinfarbenen nach. Die Hand spürt Kontakte, die schon vorbei sind, und verpasst solche, die gerade begonnen \
      haben.",
 );
 pub(in crate::console) const DEMO_LINEAR: Text = Text::of("Linear impedance", "Lineare Impedanz");
 pub(in crate::console) const DEMO_LINEAR_CAPTION: Text = Text::of(
-    "The link now carries the tissue's impedance instead of the force: stiffness, damping and mass of the \
-    last 300 ms. The force is computed from the hand's own motion (IMA), without delay. It is wrong \
-    where the impedance has changed since.",
+    "The link now carries the tissue's impedance instead of the force: stiffness, damping and mass of the last \
+     300 ms. The force is computed without delay from the hand's own motion (IMA). It is wrong if the impedance \
+     has changed since.",
     "Statt der Kraft überträgt die Verbindung jetzt die Impedanz des Gewebes: Steifigkeit, Dämpfung und Masse der \
      letzten 300 ms. Die Kraft folgt ohne Verzögerung aus der Bewegung der Hand selbst (IMA). Sie ist falsch, wo sich \
      die Impedanz seither geändert hat.",
 );
 pub(in crate::console) const DEMO_LITERAL: Text = Text::of("Nonlinear, as in the paper", "Nichtlinear, wie im Artikel");
 pub(in crate::console) const DEMO_LITERAL_CAPTION: Text = Text::of(
-    "The paper's method: a polynomial of degree 1 to 5 (NIMA). It fits the past so closely that it \
-    predicts the future badly, and it renders no force while the hand rests. The gates keep its \
-    excessive forces from the hand.",
-    "Die Methode des Artikels: ein Polynom vom Grad 1 bis 5 (NIMA). Es passt so genau zur Vergangenheit, dass es die \
-     Zukunft schlecht vorhersagt, und in Ruhe der Hand stellt es keine Kraft dar. Die Sperren halten überhöhte Kräfte \
-     von der Hand fern.",
+    "The paper's method: a polynomial of degree 1 to 5 (NIMA). It fits past data so closely that it predicts \
+     poorly, and it renders no force while the hand is at rest. The gates keep its excessive forces from the \
+     hand.",
+    "Die Methode des Artikels: ein Polynom vom Grad 1 bis 5 (NIMA). Es passt sich vergangenen Daten so genau an, \
+     dass es schlecht vorhersagt, und in Ruhe der Hand stellt es keine Kraft dar. Die Sperren halten überhöhte \
+     Kräfte von der Hand fern.",
 );
 pub(in crate::console) const DEMO_ANCHORED: Text = Text::of("Anchored", "Verankert");
 pub(in crate::console) const DEMO_ANCHORED_CAPTION: Text = Text::of(
-    "The last measured force, corrected for the hand's motion since then, and only as far as \
-    earlier corrections reduced the error. On the right, compare its error with direct reflection.",
+    "The last measured force, corrected for the hand's motion since then, but only as far as earlier corrections \
+     reduced the error. On the right, compare its error with direct reflection.",
     "Die letzte gemessene Kraft, korrigiert um die Handbewegung seither, und nur so weit, wie frühere Korrekturen den \
      Fehler verringert haben. Rechts den Fehler mit der direkten Kraftreflexion vergleichen.",
 );
 pub(in crate::console) const DEMO_MATCHED: Text = Text::of("Matched", "Abgeglichen");
 pub(in crate::console) const DEMO_MATCHED_CAPTION: Text = Text::of(
-    "Same delay, and no force crosses the link at all. Only the tissue's \
-    parameters do; the blue arrow is made from the hand's own motion, so a late force cannot kick.",
-    "Gleiche Verzögerung, doch keine Kraft geht über die Verbindung, nur die Parameter des Gewebes. Der blaue Pfeil \
-     entsteht aus der Bewegung der Hand selbst, so kann keine verspätete Kraft stoßen.",
+    "Same delay, but no force crosses the link, only the tissue's parameters. The blue arrow is computed from \
+     the hand's own motion, so a late force cannot kick.",
+    "Gleiche Verzögerung, doch keine Kraft geht über die Verbindung, nur die Parameter des Gewebes. Der blaue \
+     Pfeil wird aus der Bewegung der Hand selbst berechnet, so kann keine verspätete Kraft stoßen.",
 );
 pub(in crate::console) const DEMO_LET_GO: Text = Text::of("Letting go", "Loslassen");
 pub(in crate::console) const DEMO_LET_GO_CAPTION: Text = Text::of(
-    "Direct reflection at 300 ms, and the governor is left out. The hand lets go while it presses: the late \
-    force now pushes a handle that nobody holds, and kicks it away.",
+    "Direct reflection at 300 ms, without the governor. The hand lets go while pressing: the late force now \
+     pushes a handle that no hand holds, and kicks it away.",
     "Direkte Kraftreflexion bei 300 ms, ohne Wächter. Die Hand lässt beim Drücken los: die verspätete Kraft schiebt \
      nun ein Handgerät, das niemand hält, und stößt es weg.",
 );
 pub(in crate::console) const DEMO_GOVERNOR: Text = Text::of("The governor", "Der Wächter");
 pub(in crate::console) const DEMO_GOVERNOR_CAPTION: Text = Text::of(
-    "The same with the last gate, the governor: it notices that no hand carries the force, brakes the handle \
-    instead, and ends the feedback. The demonstration engages again when the hand is back.",
-    "Dasselbe mit der letzten Sperre, dem Wächter: er merkt, dass keine Hand die Kraft trägt, bremst stattdessen das \
-     Handgerät und beendet die Rückkopplung. Ist die Hand zurück, koppelt die Vorführung neu.",
+    "The same with the last gate, the governor: it detects that no hand bears the force, brakes the handle \
+     instead, and ends the feedback. The demonstration engages again when the hand is back.",
+    "Dasselbe mit der letzten Sperre, dem Wächter: er erkennt, dass keine Hand die Kraft aufnimmt, bremst \
+     stattdessen das Handgerät und beendet die Rückkopplung. Ist die Hand zurück, koppelt die Vorführung neu.",
 );
 pub(in crate::console) const DEMO_YOUR_TURN: Text = Text::of("Your turn", "Selbst probieren");
 pub(in crate::console) const DEMO_YOUR_TURN_CAPTION: Text = Text::of(
-    "Press M, or the button in the view, and move the instrument yourself: drag with the mouse, wheel for the height, \
-     arrow keys for small steps. Press into the tissue and watch the arrows. The mode is now the best of both, \
-     anchored and matched, by what each was worth lately. With the rig \"desk\" you can use a SpaceMouse.",
-    "M oder die Schaltfläche in der Ansicht drücken und das Instrument selbst führen: mit der Maus ziehen, Mausrad für \
-     die Höhe, Pfeiltasten für kleine Schritte. Ins Gewebe drücken und die Pfeile beobachten. Der Modus ist jetzt das \
-     Beste aus beiden, verankert und abgeglichen, gewichtet nach dem letzten Erfolg. Mit dem Aufbau „desk“ geht auch \
-     eine SpaceMouse.",
+    "Press M, or the button in the view, and move the instrument yourself: drag with the mouse, turn the wheel \
+     for height, use the arrow keys for small steps. Press into the tissue and watch the arrows. The mode is now \
+     Best of both, which mixes Anchored and Matched by their recent errors. With the rig \"desk\" you can use a \
+     SpaceMouse.",
+    "M oder die Schaltfläche in der Ansicht drücken und das Instrument selbst führen: mit der Maus ziehen, \
+     Mausrad für die Höhe, Pfeiltasten für kleine Schritte. Ins Gewebe drücken und die Pfeile beobachten. Der \
+     Modus ist jetzt Bestes aus beiden; er mischt Verankert und Abgeglichen nach ihren letzten Fehlern. Mit dem \
+     Aufbau „desk“ geht auch eine SpaceMouse.",
 );
-pub(in crate::console) const PLAY: Text = Text::of("Play", "Abspielen");
+pub(in crate::console) const PLAY: Text = Text::of("Resume demo", "Demo fortsetzen");
 pub(in crate::console) const PLAY_HOVER: Text =
     Text::of("Continues with the next chapter automatically", "Geht selbst zum nächsten Kapitel weiter");
-pub(in crate::console) const HOLD: Text = Text::of("Hold", "Pause");
+pub(in crate::console) const HOLD: Text = Text::of("Pause demo", "Demo pausieren");
 pub(in crate::console) const HOLD_HOVER: Text = Text::of(
     "Stays in this chapter; the control loop keeps running",
     "Bleibt in diesem Kapitel; die Regelung läuft weiter",
 );
 pub(in crate::console) const NOTE_REAL_RIG: Text = Text::of(
-    "The demonstration runs on simulated rigs only: on a real rig, mode and delay never change by themselves",
+    "The demonstration runs on simulated rigs only: on a real rig, mode and delay never change automatically",
     "Die Vorführung läuft nur auf simulierten Aufbauten: auf einem echten ändern sich Modus und Verzögerung nie von \
      selbst",
 );
@@ -113,7 +114,7 @@ pub(in crate::console) const NOTE_STOPPED: Text = Text::of(
     "Stopped: no force, no motion. The demonstration waits until you press Release stop, then Engage.",
     "Angehalten: keine Kraft, keine Bewegung. Die Vorführung wartet, bis der Halt gelöst und gekoppelt wird.",
 );
-/// Why the loop ended an engagement without a fault.
+/// Reason why the loop ended an engagement without a fault.
 pub(in crate::console) const HAND_GONE: Text = Text::of(
     "The governor found no hand at the handle and ended the engagement",
     "Der Wächter fand keine Hand am Handgerät und hat die Kopplung beendet",
@@ -130,13 +131,13 @@ pub(in crate::console) const NOTE_CHOOSE_SIMULATED: Text = Text::of(
 pub(in crate::console) const MEASURED: Text = Text::of("measured at the instrument", "am Instrument gemessen");
 pub(in crate::console) const RENDERED: Text = Text::of("rendered to the hand", "in der Hand dargestellt");
 pub(in crate::console) const BARS_HOVER: Text = Text::of(
-    "Size of the force measured at the instrument and of the force rendered to the hand (N). The mark is \
-    the force ceiling, the largest force that can reach the hand.",
+    "Magnitude of the force measured at the instrument and of the force rendered to the hand (N). The mark is \
+     the force ceiling, the largest force that can reach the hand.",
     "Betrag der am Instrument gemessenen und der in der Hand dargestellten Kraft (N). Die Marke ist die Höchstkraft, \
      die größte Kraft, die die Hand erreichen kann.",
 );
 
-/// How far the handle went since it was let go, mm.
+/// Travel of the handle since its release, mm.
 pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     if travel_mm < 10.0 {
         told!("The handle moved {travel_mm:.1} mm.", "Weg des Handgeräts: {travel_mm:.1} mm.")
@@ -145,7 +146,6 @@ pub(in crate::console) fn handle_went(travel_mm: f64) -> String {
     }
 }
 
-/// A fault that the demonstration releases by itself, in so many seconds.
 pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> String {
     let what = told!(
         "Fault: {cause}. The loop removed force and motion at once",
@@ -154,7 +154,6 @@ pub(in crate::console) fn recovers_from_fault(cause: &str, left_s: f64) -> Strin
     recovers(&what, left_s)
 }
 
-/// What ended the engagement, and in how many seconds the chapter restarts.
 pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
     if left_s > 0.0 {
         told!(
@@ -169,7 +168,7 @@ pub(in crate::console) fn recovers(what: &str, left_s: f64) -> String {
     }
 }
 
-/// A fault that only a person releases: `stopped` because Stop was pressed, else because the rig has devices.
+/// A fault that only a person releases: `stopped` if Stop was pressed, otherwise because the rig has devices.
 pub(in crate::console) fn fault_waits(cause: &str, stopped: bool) -> String {
     if stopped {
         told!(
@@ -189,10 +188,10 @@ pub(in crate::console) fn meaning_and_key(meaning: &str, key: &str) -> String {
     told!("{meaning}\nKey {key}", "{meaning}\nTaste {key}")
 }
 
-/// In the place of a bar.
+/// Replaces a bar whose force is unknown.
 pub(in crate::console) const UNKNOWN: Text = Text::of("unknown", "unbekannt");
 
-/// Both forces of a hand, the measured one with its unit or "unknown", and the ceiling, N.
+/// `measured` has its unit, or is "unknown".
 pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceiling_n: f64) -> String {
     told!(
         "{name}: measured {measured}, rendered {rendered_n:.1} N, ceiling {ceiling_n:.0} N",
@@ -200,7 +199,6 @@ pub(in crate::console) fn hand(name: &str, measured: &str, rendered_n: f64, ceil
     )
 }
 
-/// Label of the ceiling's mark.
 pub(in crate::console) fn ceiling(ceiling_n: f64) -> String {
     told!("ceiling {ceiling_n:.0} N", "Höchstkraft {ceiling_n:.0} N")
 }

@@ -16,33 +16,34 @@ pub(in crate::console) const WHY_AGREED: Text =
 pub(in crate::console) const WHY_CLUTCH: Text = Text::of("the clutch", "die Kupplung");
 pub(in crate::console) const WHY_LATE: Text =
     Text::of("the drives did not switch on in time", "Antriebe nicht rechtzeitig ein");
-pub(in crate::console) const WHY_ABSENT: Text = Text::of("nobody holds the handle", "niemand hält das Handgerät");
+pub(in crate::console) const WHY_ABSENT: Text = Text::of("no hand holds the handle", "keine Hand hält das Handgerät");
 pub(in crate::console) const SINCE_START: Text = Text::of("since the loop started", "seit Start der Regelung");
 pub(in crate::console) const INTERLOCK_HOVER: Text = Text::of(
-    "Force and motion are possible in Engaged only. Stop and fault are latched: press Release stop to \
-    return to Idle, then Engage. A device that reconnects returns to Idle. Nothing resumes by itself; \
-    only the clutch returns to Engaged.",
-    "Kraft und Bewegung gibt es nur im Zustand Gekoppelt. Halt und Störung sind verriegelt: Halt lösen führt in den \
-     Leerlauf, dann koppeln. Ein wieder verbundenes Gerät führt in den Leerlauf. Nichts läuft von selbst wieder an; \
-     nur die Kupplung führt zurück zu Gekoppelt.",
+    "Force and motion are possible in Engaged only. Stop and fault are latched: press Release stop to return to \
+     Idle, then Engage. When a device reconnects, the loop returns to Idle. Nothing resumes automatically, \
+     except that releasing the clutch returns to Engaged.",
+    "Kraft und Bewegung gibt es nur im Zustand Gekoppelt. Halt und Störung sind verriegelt: Halt lösen führt in \
+     den Leerlauf, dann koppeln. Ein wieder verbundenes Gerät führt in den Leerlauf. Nichts läuft von selbst \
+     wieder an; nur das Loslassen der Kupplung führt zurück zu Gekoppelt.",
 );
 pub(in crate::console) const FROM_ANY_STATE: Text = Text::of("from any state", "aus jedem Zustand");
 pub(in crate::console) const FORCE_HOVER: Text = Text::of(
-    "Size of the force that the mode asks for now, and of the force that reaches the hand after all gates (N)",
+    "Magnitude of the force that the mode requests now, and of the force that reaches the hand after all gates \
+     (N)",
     "Betrag der Kraft, die der Modus jetzt anfordert, und der Kraft, die nach allen Sperren die Hand erreicht (N)",
 );
 pub(in crate::console) const NO_DEVICE: Text = Text::of("No device", "Kein Gerät");
 pub(in crate::console) const WHY_FAULT: Text = Text::of("a fault", "eine Störung");
-pub(in crate::console) const ASKED: Text = Text::of("asked", "Soll");
+pub(in crate::console) const ASKED: Text = Text::of("requested", "Soll");
 pub(in crate::console) const HAND: Text = Text::of("hand", "Hand");
 pub(in crate::console) const NEVER: Text = Text::of("never", "nie");
 
-/// Addition for the side, if there are two arms.
+/// Suffix that names the side of a rig with two arms.
 pub(in crate::console) fn of_hand(side: &str) -> String {
     told!(", {side} hand", ", Hand {side}")
 }
 
-/// When the state was entered (s on the loop's clock), and why.
+/// Time at which the state was entered, s on the loop's clock, and the cause.
 pub(in crate::console) fn since(t_s: f64, why: &str) -> String {
     told!("since {t_s:.1} s: {why}", "seit {t_s:.1} s: {why}")
 }
@@ -52,7 +53,7 @@ pub(in crate::console) fn interlock(whose: &str, state: &str) -> String {
     told!("Interlock{whose}: {state}", "Verriegelung{whose}: {state}")
 }
 
-/// A gate in one sentence; `whose` from [`of_hand`].
+/// Gate in one sentence; `whose` from [`of_hand`].
 pub(in crate::console) fn gate(name: &str, whose: &str, standing: &str, ticks: u64) -> String {
     told!(
         "Gate {name}{whose}: {standing}, acted in {ticks} ticks",

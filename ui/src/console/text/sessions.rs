@@ -9,11 +9,11 @@ use crate::language::{Text, told, word};
 pub(in crate::console) const NAME_KEEP: Text = Text::of("Keep this session", "Diese Sitzung sichern");
 pub(in crate::console) const NAME_KEPT: Text = Text::of("This session is kept", "Diese Sitzung ist gesichert");
 pub(in crate::console) const CURE: Text = Text::of(
-    "Free space or change the folder; if the recording has ended, start the rig again",
+    "Free disk space or change the folder; if the recording has ended, restart the rig",
     "Platz schaffen oder Ordner wechseln; ist die Aufzeichnung beendet, den Aufbau neu starten",
 );
 
-/// On the button that keeps a session: how long it has been recorded, and whether it is kept.
+/// Label of the button that keeps a session.
 pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     let what = if kept { word("Kept", "Gesichert") } else { word("Rec", "Rec") };
     let hours = seconds / 3600;
@@ -26,17 +26,17 @@ pub(in crate::console) fn recorded_for(seconds: u64, kept: bool) -> String {
     }
 }
 
-/// Below the pointer.
 pub(in crate::console) fn hover(shown: &Shown) -> String {
     let what = if shown.kept {
         word(
-            "This session is kept. Press to let it be deleted when room is needed (key K)",
+            "This session is kept. Press to allow its deletion when space is needed (key K)",
             "Diese Sitzung ist gesichert. Drücken gibt sie zum Löschen bei Platzmangel frei (Taste K)",
         )
     } else {
         word(
-            "Every session is recorded; the oldest make room for new ones. Press to keep this one (key K)",
-            "Jede Sitzung wird aufgezeichnet; die ältesten weichen neuen. Drücken sichert diese (Taste K)",
+            "Every session is recorded, and the oldest are deleted to make room. Press to keep this one (key K)",
+            "Jede Sitzung wird aufgezeichnet, die ältesten werden bei Platzmangel gelöscht. Drücken sichert \
+             diese (Taste K)",
         )
     };
     let lost = if shown.lost > 0 {
@@ -49,12 +49,12 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
         String::new()
     };
     let watched = shown.watched.iter().fold(String::new(), |words, one| {
-        words + &told!("\nOthers watch at {}: {} now", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
+        words + &told!("\nShared at {}: {} watching", "\nZuschauer über {}: jetzt {}", one.at, one.watchers)
     });
     let path = shown.path.display();
     let megabytes = shown.bytes as f64 * 1e-6;
     let pictures = if shown.pictures > 0 {
-        told!("\n{} pictures of the endoscope", "\n{} Endoskopbilder", shown.pictures)
+        told!("\n{} endoscope images", "\n{} Endoskopbilder", shown.pictures)
     } else {
         String::new()
     };
@@ -65,61 +65,53 @@ pub(in crate::console) fn hover(shown: &Shown) -> String {
     )
 }
 
-/// The folder cannot be used.
 pub(in crate::console) fn no_folder(folder: &Path, error: &io::Error) -> String {
     told!("the folder {} cannot be used: {error}", "der Ordner {} ist nicht nutzbar: {error}", folder.display())
 }
 
-/// The mark cannot be written or removed.
 pub(in crate::console) fn not_kept(path: &Path, error: &io::Error) -> String {
     told!(
-        "whether {} is kept cannot be changed: {error}",
+        "cannot change whether {} is kept: {error}",
         "die Sicherung von {} lässt sich nicht ändern: {error}",
         path.display()
     )
 }
 
-/// The disk does not answer.
 pub(in crate::console) fn slow(waits: Duration) -> String {
     told!(
-        "the disk has not answered for {:.1} s; after 2 s a part of the session is lost",
+        "the disk has not responded for {:.1} s; after 2 s a part of the session is lost",
         "die Platte antwortet seit {:.1} s nicht; nach 2 s geht ein Teil der Sitzung verloren",
         waits.as_secs_f64()
     )
 }
 
-/// Entries are missing.
 pub(in crate::console) fn lost(entries: u64) -> String {
     told!(
-        "the disk is too slow: {entries} entries of this session are lost, a replay ends at the first of them",
+        "the disk is too slow: {entries} entries of this session are lost; a replay ends at the first of them",
         "die Platte ist zu langsam: {entries} Einträge dieser Sitzung fehlen, eine Wiedergabe endet beim ersten davon"
     )
 }
 
-/// Pictures are missing.
 pub(in crate::console) fn pictures_lost(pictures: u64) -> String {
     told!(
-        "the disk is too slow: {pictures} pictures of the endoscope are missing in this session, nothing else",
+        "the disk is too slow: {pictures} endoscope images are missing from this session, but nothing else",
         "die Platte ist zu langsam: in dieser Sitzung fehlen {pictures} Endoskopbilder, sonst nichts"
     )
 }
 
-/// Cause of an alarm.
 pub(in crate::console) fn cause(why: &str) -> String {
     told!("Recording: {why}", "Aufzeichnung: {why}")
 }
 
-/// In the log of a session: a moment that the operator marked.
+/// Entry of the session log.
 pub(in crate::console) fn mark(number: usize) -> String {
     told!("mark {number}", "Marke {number}")
 }
 
-/// The cause of an alarm has appeared.
 pub(in crate::console) fn alarm(cause: &str) -> String {
     told!("alarm: {cause}", "Alarm: {cause}")
 }
 
-/// And it has ended.
 pub(in crate::console) fn alarm_over(cause: &str) -> String {
-    told!("alarm over: {cause}", "Alarm beendet: {cause}")
+    told!("alarm ended: {cause}", "Alarm beendet: {cause}")
 }

@@ -7,22 +7,18 @@ pub(in crate::console) const LAYOUT_LOST: Text = Text::of(
     "Die Panel-Anordnung ist nicht lesbar; es gilt die Standardanordnung",
 );
 
-/// The file cannot be read.
 pub(in crate::console) fn not_read(error: &impl std::fmt::Display) -> String {
     told!("The settings cannot be read: {error}", "Einstellungen nicht lesbar: {error}")
 }
 
-/// The file cannot be written.
 pub(in crate::console) fn not_kept(error: &impl std::fmt::Display) -> String {
     told!("The settings cannot be saved: {error}", "Einstellungen nicht speicherbar: {error}")
 }
 
-/// Only the layout cannot be read.
 pub(in crate::console) fn layout_lost(error: &impl std::fmt::Display) -> String {
     format!("{LAYOUT_LOST} ({error})")
 }
 
-/// The file is invalid and was renamed.
 pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) -> String {
     told!(
         "The settings file was damaged ({error}); it was renamed to {name}, and the defaults are used",
@@ -30,7 +26,6 @@ pub(in crate::console) fn set_aside(error: &impl std::fmt::Display, name: &str) 
     )
 }
 
-/// The file is invalid.
 pub(in crate::console) fn damaged(error: &impl std::fmt::Display) -> String {
     told!(
         "The settings file is damaged ({error}); the defaults are used",

@@ -4,7 +4,7 @@ use crate::language::{Text, told, word};
 
 pub(in crate::console) const OPEN: Text = Text::of("Rig", "Aufbau");
 pub(in crate::console) const OPEN_HOVER: Text = Text::of(
-    "Choose a rig and a scene, make a rig, see what is plugged in. F6",
+    "Choose a rig and a scene, create a rig, see the connected devices. F6",
     "Aufbau und Szene wählen, Aufbau anlegen, Angeschlossenes sehen. F6",
 );
 pub(in crate::console) const OPEN_DISABLED_HOVER: Text = Text::of(
@@ -19,20 +19,21 @@ pub(in crate::console) const RIGS_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SCENES: Text = Text::of("2. Choose a scene", "2. Szene wählen");
 pub(in crate::console) const SCENES_HOVER: Text = Text::of(
-    "What a simulated or emulated rig works on. A real rig only shows it in the 3-D view.",
-    "Woran ein simulierter oder emulierter Aufbau arbeitet. Ein echter zeigt sie nur in der 3-D-Ansicht.",
+    "The field that a simulated or emulated rig works on. A real rig only shows it in the 3-D view.",
+    "Das Feld, an dem ein simulierter oder emulierter Aufbau arbeitet. Ein echter zeigt es nur in der \
+     3-D-Ansicht.",
 );
 pub(in crate::console) const MISSING: Text = Text::of("Devices of this rig", "Geräte dieses Aufbaus");
 pub(in crate::console) const MISSING_HOVER: Text = Text::of(
-    "Whether each device of the chosen rig answers, and if not, why and what to do",
+    "Whether each device of the chosen rig responds; if not, the cause and the remedy",
     "Ob jedes Gerät des gewählten Aufbaus antwortet, und wenn nicht, Grund und Abhilfe",
 );
 pub(in crate::console) const PLUGGED: Text = Text::of("Plugged into this computer", "An diesem Rechner angeschlossen");
 pub(in crate::console) const PLUGGED_HOVER: Text = Text::of(
-    "Found without opening anything; looked for again every two seconds",
-    "Gefunden, ohne etwas zu öffnen; alle zwei Sekunden neu gesucht",
+    "Found without opening any device; updated every two seconds",
+    "Gefunden, ohne ein Gerät zu öffnen; alle zwei Sekunden aktualisiert",
 );
-pub(in crate::console) const RECENT: Text = Text::of("Used last", "Zuletzt");
+pub(in crate::console) const RECENT: Text = Text::of("Recent", "Zuletzt");
 pub(in crate::console) const BUILT_IN: Text = Text::of("Built in", "Eingebaut");
 pub(in crate::console) const YOURS: Text = Text::of("Yours", "Eigene");
 pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file...", "Datei öffnen...");
@@ -41,28 +42,26 @@ pub(in crate::console) const ELSEWHERE_HOVER: Text =
 /// The kind of file in the system's dialog.
 pub(in crate::console) const RIG_FILES: Text = Text::of("Rig files", "Aufbaudateien");
 pub(in crate::console) const NEW_NAME: Text = Text::of("Name of a new rig", "Name des neuen Aufbaus");
-pub(in crate::console) const MAKE: Text = Text::of("Make a copy of the chosen rig", "Gewählten Aufbau kopieren");
+pub(in crate::console) const MAKE: Text = Text::of("Copy the chosen rig", "Gewählten Aufbau kopieren");
 pub(in crate::console) const MAKE_HOVER: Text = Text::of(
-    "Writes a rig file with its comments into your folder of rigs; the chosen rig stays as it is",
-    "Schreibt eine kommentierte Aufbaudatei in Ihren Ordner der Aufbauten; der gewählte bleibt, wie er ist",
+    "Writes a commented rig file into your rigs folder; the chosen rig stays unchanged",
+    "Schreibt eine kommentierte Aufbaudatei in Ihren Ordner der Aufbauten; der gewählte bleibt unverändert",
 );
 pub(in crate::console) const START: Text = Text::of("Start", "Starten");
-pub(in crate::console) const START_AGAIN: Text = Text::of("Start again", "Neu starten");
+pub(in crate::console) const START_AGAIN: Text = Text::of("Restart", "Neu starten");
 pub(in crate::console) const START_HOVER: Text =
     Text::of("Ends the loop and starts this rig, idle", "Beendet die Regelung und startet diesen Aufbau im Leerlauf");
 pub(in crate::console) const BACK: Text = Text::of("Back", "Zurück");
 pub(in crate::console) const BACK_HOVER: Text =
     Text::of("Back to the view; nothing changes", "Zurück zur Ansicht; nichts ändert sich");
 pub(in crate::console) const CHECK: Text = Text::of("Check the devices", "Geräte prüfen");
-pub(in crate::console) const CHECK_HOVER: Text = Text::of(
-    "Opens each device for a moment; takes about a second",
-    "Öffnet jedes Gerät kurz; dauert etwa eine Sekunde",
-);
+pub(in crate::console) const CHECK_HOVER: Text =
+    Text::of("Opens each device briefly; takes about a second", "Öffnet jedes Gerät kurz; dauert etwa eine Sekunde");
 pub(in crate::console) const CHECKING: Text = Text::of("Checking the devices", "Geräte werden geprüft");
 pub(in crate::console) const SIMULATED: Text =
     Text::of("Everything is simulated: nothing needs to be plugged in", "Alles simuliert: nichts anzuschließen");
 pub(in crate::console) const LED: Text = Text::of(
-    "1 device: a real handle leads the simulated rig",
+    "1 device: a real handle drives the simulated rig",
     "1 Gerät: ein echtes Handgerät führt den simulierten \
      Aufbau",
 );
@@ -72,19 +71,19 @@ pub(in crate::console) const EMULATED: Text = Text::of(
 );
 pub(in crate::console) const RUNNING: Text = Text::of("Running now", "Läuft jetzt");
 pub(in crate::console) const NOTHING_PLUGGED: Text =
-    Text::of("No device that this program can use", "Kein für dieses Programm nutzbares Gerät");
+    Text::of("No usable device found", "Kein nutzbares Gerät gefunden");
 pub(in crate::console) const STARTING: Text = Text::of("Starting", "Startet");
 pub(in crate::console) const ENGAGED: Text =
-    Text::of("Stop first: this rig is engaged", "Erst anhalten: dieser Aufbau ist gekoppelt");
-pub(in crate::console) const ALL_THERE: Text = Text::of("Every device answers", "Alle Geräte antworten");
+    Text::of("Press Stop first: this rig is engaged", "Erst Halt drücken: dieser Aufbau ist gekoppelt");
+pub(in crate::console) const ALL_THERE: Text = Text::of("All devices respond", "Alle Geräte antworten");
 pub(in crate::console) const NO_THREAD: Text =
-    Text::of("the system gives no thread for the emulators", "das System gibt keinen Thread für die Emulatoren");
+    Text::of("the system cannot start a thread for the emulators", "das System gibt keinen Thread für die Emulatoren");
 pub(in crate::console) const NO_FOLDER: Text = Text::of(
     "There is no folder for your files: set NIMA_DATA_DIR",
     "Kein Ordner für Ihre Dateien: NIMA_DATA_DIR setzen",
 );
 pub(in crate::console) const NAME_FIRST: Text = Text::of(
-    "Give it a name of letters, digits, blanks, dashes or underscores",
+    "Enter a name of letters, digits, spaces, dashes or underscores",
     "Namen aus Buchstaben, Ziffern, Leerzeichen, Binde- oder Unterstrichen eingeben",
 );
 
@@ -92,103 +91,98 @@ pub(in crate::console) const WELCOME_WINDOW: Text = Text::of("Welcome", "Willkom
 pub(in crate::console) const WELCOME: Text =
     Text::of("Haptic teleoperation in laparoscopy", "Haptische Teleoperation in der Laparoskopie");
 pub(in crate::console) const WELCOME_WHAT: Text = Text::of(
-    "A surgeon moves a handle, and a robot arm moves the instrument. This console measures the force at its tip, \
-     predicts it across the delay of the link, limits it, and gives it back to the hand. What moves behind this window \
-     is simulated.",
-    "Der Operateur bewegt ein Handgerät, und ein Roboterarm bewegt das Instrument. Diese Konsole misst die Kraft an \
-     der Spitze, sagt sie über die Verzögerung der Verbindung hinweg voraus, begrenzt sie und gibt sie an die Hand \
-     zurück. Was sich hinter diesem Fenster bewegt, ist simuliert.",
+    "A surgeon moves a handle, and a robot arm moves the instrument. This console measures the force at the \
+     instrument's tip, predicts it across the delay of the link, limits it, and renders it to the hand. \
+     Everything that moves behind this window is simulated.",
+    "Der Operateur bewegt ein Handgerät, und ein Roboterarm bewegt das Instrument. Diese Konsole misst die Kraft \
+     an der Instrumentenspitze, sagt sie über die Verzögerung der Verbindung hinweg voraus, begrenzt sie und \
+     stellt sie in der Hand dar. Alles, was sich hinter diesem Fenster bewegt, ist simuliert.",
 );
 pub(in crate::console) const WELCOME_NOT: Text = Text::of(
     "For research and teaching only. It is not a medical device: never use it on patients.",
     "Nur für Forschung und Lehre. Kein Medizinprodukt: niemals am Patienten verwenden.",
 );
 pub(in crate::console) const WELCOME_SIMULATED: Text =
-    Text::of("Go on with the simulated rig", "Weiter mit dem simulierten Aufbau");
+    Text::of("Continue with the simulated rig", "Weiter mit dem simulierten Aufbau");
 pub(in crate::console) const WELCOME_SIMULATED_ABOUT: Text = Text::of(
-    "It runs already. A tour of four steps shows the screen.",
+    "It is already running. A tour of four steps explains the screen.",
     "Er läuft schon. Ein Rundgang in vier Schritten zeigt den Bildschirm.",
 );
 pub(in crate::console) const WELCOME_DEMO: Text = Text::of("Watch the demonstration", "Vorführung ansehen");
 pub(in crate::console) const WELCOME_DEMO_ABOUT: Text = Text::of(
-    "It explains the forces chapter by chapter, then it is your turn",
+    "It explains the forces chapter by chapter; then it is your turn",
     "Sie erklärt die Kräfte Kapitel für Kapitel, danach selbst probieren",
 );
 pub(in crate::console) const WELCOME_OWN: Text =
-    Text::of("Choose or make a rig of your own", "Eigenen Aufbau wählen oder anlegen");
+    Text::of("Choose or create your own rig", "Eigenen Aufbau wählen oder anlegen");
 pub(in crate::console) const WELCOME_OWN_ABOUT: Text = Text::of(
-    "Your devices, the paper's rig emulated, or another scene. It starts idle, and only you engage it.",
-    "Eigene Geräte, der Aufbau des Artikels emuliert oder eine andere Szene. Startet im Leerlauf; gekoppelt wird nur \
-     von Hand.",
+    "Your own devices, an emulation of the paper's rig, or another scene. The rig starts idle and engages only \
+     when you press Engage.",
+    "Eigene Geräte, der Aufbau des Artikels emuliert oder eine andere Szene. Startet im Leerlauf; gekoppelt wird \
+     nur auf Knopfdruck.",
 );
 
 pub(in crate::console) const ENDOSCOPE: Text = Text::of("Endoscope of this rig", "Endoskop dieses Aufbaus");
 pub(in crate::console) const ENDOSCOPE_HOVER: Text = Text::of(
-    "Where the surgeon's picture comes from. What is typed is tried at once",
+    "Source of the surgeon's image. A typed address is tried at once",
     "Woher das Bild des Operateurs kommt. Eingaben werden sofort probiert",
 );
 pub(in crate::console) const ENDOSCOPE_ADDRESS: Text = Text::of("Address of the endoscope", "Adresse des Endoskops");
 pub(in crate::console) const ENDOSCOPE_HINT: Text =
     Text::of("http://192.168.10.7:8080/stream", "http://192.168.10.7:8080/stream");
 pub(in crate::console) const ENDOSCOPE_USE: Text =
-    Text::of("Write this address into the rig", "Adresse in den Aufbau schreiben");
+    Text::of("Write this address to the rig", "Adresse in den Aufbau schreiben");
 pub(in crate::console) const ENDOSCOPE_REMOVE: Text =
-    Text::of("Take the endoscope out of the rig", "Endoskop aus dem Aufbau entfernen");
+    Text::of("Remove the endoscope from the rig", "Endoskop aus dem Aufbau entfernen");
 pub(in crate::console) const ENDOSCOPE_USE_HOVER: Text = Text::of(
-    "A built-in rig stays as it is: a copy of yours gets the address. Start it to see the picture in the surgeon's \
-     view.",
-    "Ein eingebauter Aufbau bleibt, wie er ist: eine eigene Kopie erhält die Adresse. Aufbau starten, um das Bild in \
-     der Ansicht Chirurg zu sehen.",
+    "A built-in rig stays unchanged: the address is written to your copy of it. Start the rig to see the image \
+     in the Surgeon view.",
+    "Ein eingebauter Aufbau bleibt unverändert: eine eigene Kopie erhält die Adresse. Aufbau starten, um das \
+     Bild in der Ansicht Chirurg zu sehen.",
 );
 pub(in crate::console) const ENDOSCOPE_TYPING: Text =
     Text::of("Tried when you stop typing", "Wird nach der Eingabe probiert");
-pub(in crate::console) const ENDOSCOPE_OPENING: Text = Text::of("Opening it", "Wird geöffnet");
+pub(in crate::console) const ENDOSCOPE_OPENING: Text = Text::of("Opening", "Wird geöffnet");
 pub(in crate::console) const ENDOSCOPE_FORMS: Text = Text::of(
-    "Give http://HOST:PORT/PATH, or the path of a .mjpeg, a JPEG or a folder of them",
+    "Enter http://HOST:PORT/PATH, or the path of a .mjpeg file, a JPEG file or a folder of JPEG files",
     "http://HOST:PORT/PATH oder den Pfad eines .mjpeg, eines JPEG oder eines Ordners davon eingeben",
 );
 pub(in crate::console) const NO_ENDOSCOPE: Text =
-    Text::of("None: the surgeon's view draws the field", "Keins: die Ansicht Chirurg zeichnet das OP-Feld");
+    Text::of("None: the Surgeon view draws the field", "Keins: die Ansicht Chirurg zeichnet das OP-Feld");
 
-/// An address that works: size of the picture, and pictures a second where it moves.
+/// Size of the image in px, and frame rate; `None` for a still image.
 pub(in crate::console) fn endoscope_sends([width, height]: [usize; 2], rate_hz: Option<f64>) -> String {
     match rate_hz {
         Some(rate_hz) => told!(
-            "Sends {width} x {height} pixels, {rate_hz:.0} pictures a second",
+            "Sends {width} x {height} pixels, {rate_hz:.0} images per second",
             "Sendet {width} x {height} Pixel, {rate_hz:.0} Bilder pro Sekunde"
         ),
-        None => told!("One picture of {width} x {height} pixels", "Ein Bild mit {width} x {height} Pixeln"),
+        None => told!("One image of {width} x {height} pixels", "Ein Bild mit {width} x {height} Pixeln"),
     }
 }
 
-/// The address is in the rig's file.
 pub(in crate::console) fn endoscope_written(path: &str) -> String {
-    told!("Written: {path}. Start it to use the address.", "Geschrieben: {path}. Zum Nutzen der Adresse starten.")
+    told!("Written: {path}. Start the rig to use the address.", "Geschrieben: {path}. Zum Nutzen der Adresse starten.")
 }
 
-/// A rig in few words: what it runs on.
 pub(in crate::console) fn of_devices(count: usize, emulated: bool) -> String {
     let devices =
         if count == 1 { word("1 device", "1 Gerät").to_owned() } else { told!("{count} devices", "{count} Geräte") };
     if emulated { told!("{devices}, emulated", "{devices}, emuliert") } else { devices }
 }
 
-/// A file that cannot be used.
 pub(in crate::console) fn unusable(cause: &str) -> String {
     told!("Cannot be used: {cause}", "Nicht nutzbar: {cause}")
 }
 
-/// The name is taken.
 pub(in crate::console) fn taken(path: &std::path::Path) -> String {
-    told!("There is a rig of this name: {}", "Ein Aufbau heißt schon so: {}", path.display())
+    told!("A rig with this name exists: {}", "Ein Aufbau heißt schon so: {}", path.display())
 }
 
-/// Where a new rig file is.
 pub(in crate::console) fn made(path: &std::path::Path) -> String {
     told!("Written: {}", "Geschrieben: {}", path.display())
 }
 
-/// The rig did not start; which one is running instead.
 pub(in crate::console) fn not_started(cause: &str, instead: Option<&str>) -> String {
     match instead {
         Some(rig) => {
@@ -198,7 +192,6 @@ pub(in crate::console) fn not_started(cause: &str, instead: Option<&str>) -> Str
     }
 }
 
-/// A device and its state.
 pub(in crate::console) fn answers(name: &str, product: &str, serial: &str) -> String {
     format!("{name}: {product} {serial}").trim_end().to_owned()
 }

@@ -14,12 +14,13 @@ pub(in crate::console) const WORK_HOVER: Text = Text::of(
 );
 pub(in crate::console) const SAMPLE_TO_FORCE: Text = Text::of("Sample to force", "Messung bis Kraft");
 pub(in crate::console) const SAMPLE_TO_FORCE_HOVER: Text = Text::of(
-    "Time from the arrival of the oldest measurement until the force computed from it is sent to the handle (µs)",
+    "Time from the arrival of the oldest measurement to the sending of the force computed from it to the handle \
+     (µs)",
     "Zeit vom Eintreffen des ältesten Messwerts, bis die daraus berechnete Kraft zum Handgerät geht (µs)",
 );
 pub(in crate::console) const TICKS: Text = Text::of("Ticks", "Takte");
 pub(in crate::console) const TICKS_HOVER: Text = Text::of(
-    "Ticks since the loop started, and how many per second reach this screen",
+    "Ticks since the loop started, and ticks per second that reach this screen",
     "Takte seit Start der Regelung und wie viele pro Sekunde diesen Bildschirm erreichen",
 );
 pub(in crate::console) const MISSED: Text = Text::of("Missed", "Versäumt");
@@ -41,27 +42,24 @@ pub(in crate::console) const SCHEDULING_HOVER: Text = Text::of(
 pub(in crate::console) const REAL_TIME_PRIORITY: Text = Text::of("Real-time priority", "Echtzeitpriorität");
 pub(in crate::console) const LOCKED_MEMORY: Text = Text::of("Locked memory", "Gesperrter Speicher");
 pub(in crate::console) const FRAME_HOVER: Text = Text::of(
-    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), \
-    and the work in the present frame",
+    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), and the \
+     work in the current frame",
     "Zeit zwischen zwei Bildern dieses Fensters seit dem Öffnen (ms; Ziel 31 ms, ohne Leerlauf) und die Arbeit am \
      aktuellen Bild",
 );
 pub(in crate::console) const FRAME_HOVER_ROUGH: Text = Text::of(
-    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), \
-    and the work in the present frame. Edges in 3-D are not smoothed, because this computer would draw \
-    too slowly.",
+    "Time between two frames of this window since it opened (ms; target 31 ms, idle time not counted), and the \
+     work in the current frame. Edges in 3-D are not smoothed, because this computer would draw too slowly.",
     "Zeit zwischen zwei Bildern dieses Fensters seit dem Öffnen (ms; Ziel 31 ms, ohne Leerlauf) und die Arbeit am \
      aktuellen Bild. Kanten in 3-D sind nicht geglättet, weil dieser Rechner sonst zu langsam zeichnet.",
 );
 pub(in crate::console) const GRANTED: Text = Text::of("granted", "gewährt");
 pub(in crate::console) const REFUSED: Text = Text::of("refused", "verweigert");
 
-/// Range of the last bar of a histogram.
 pub(in crate::console) fn and_more(from_us: f64) -> String {
     told!("{from_us:.0} µs or more", "{from_us:.0} µs oder mehr")
 }
 
-/// Range of any other bar.
 pub(in crate::console) fn from_to(from_us: f64, to_us: f64) -> String {
     told!("{from_us:.0} to {to_us:.0} µs", "{from_us:.0} bis {to_us:.0} µs")
 }
@@ -71,7 +69,6 @@ pub(in crate::console) fn bar(name: &str, range: &str, ticks: &str, share: &str)
     told!("{name}: {range}\n{ticks} ticks, {share}", "{name}: {range}\n{ticks} Takte, {share}")
 }
 
-/// A histogram in one sentence.
 pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadline_us: f64) -> String {
     told!(
         "{name} histogram: {late} of {total} ticks exceeded the deadline of {deadline_us:.0} µs",
@@ -79,17 +76,14 @@ pub(in crate::console) fn histogram(name: &str, late: &str, total: &str, deadlin
     )
 }
 
-/// Label of the deadline.
 pub(in crate::console) fn deadline(deadline_us: f64) -> String {
     told!("deadline {deadline_us:.0} µs", "Frist {deadline_us:.0} µs")
 }
 
-/// Explanation of the height scale of a histogram.
 pub(in crate::console) fn log_scale(top: &str) -> String {
     told!("log scale, maximum {top}", "log. Skala, Maximum {top}")
 }
 
-/// Title of the strip of missed periods.
 pub(in crate::console) fn missed(minutes: usize, count: &str) -> String {
     told!("Missed in the last {minutes} min: {count}", "Versäumt in den letzten {minutes} min: {count}")
 }
@@ -104,7 +98,6 @@ pub(in crate::console) fn missed_at(age_s: usize, count: &str) -> String {
     told!("{age_s} s ago: {count} periods missed", "vor {age_s} s: {count} Takte versäumt")
 }
 
-/// Number of ticks, and their rate.
 pub(in crate::console) fn ticks_at(ticks: &str, rate_hz: f64) -> String {
     told!("{ticks} at {rate_hz:.0} Hz", "{ticks} mit {rate_hz:.0} Hz")
 }

@@ -5,7 +5,7 @@ use crate::language::{Text, told};
 pub(in crate::console) const PAPER: Text = Text::of("paper", "Artikel");
 pub(in crate::console) const STEP_READY: Text = Text::of("Ready", "Bereit");
 pub(in crate::console) const STEP_READY_HOVER: Text = Text::of(
-    "Checks that everything needed for a recording is present",
+    "Checks that everything needed for a recording is available",
     "Prüft, ob alles für eine Aufzeichnung da ist",
 );
 pub(in crate::console) const STEP_RECORD: Text = Text::of("Record", "Aufzeichnen");
@@ -15,7 +15,7 @@ pub(in crate::console) const STEP_RECORD_HOVER: Text = Text::of(
 );
 pub(in crate::console) const STEP_TRAIN: Text = Text::of("Train", "Trainieren");
 pub(in crate::console) const STEP_TRAIN_HOVER: Text = Text::of(
-    "Trains the network on the recording; you can go on working in this window",
+    "Trains the network on the recording; you can keep working in this window",
     "Trainiert das Netz mit der Aufzeichnung; das Fenster bleibt dabei benutzbar",
 );
 pub(in crate::console) const STEP_CHECK_HOVER: Text = Text::of(
@@ -26,7 +26,7 @@ pub(in crate::console) const SIZE_SMALL: Text = Text::of("Small", "Klein");
 pub(in crate::console) const SIZE_USUAL: Text = Text::of("Default", "Standard");
 pub(in crate::console) const SIZE_LARGE: Text = Text::of("Large", "Groß");
 pub(in crate::console) const NEEDS_CORRESPONDENCE: Text =
-    Text::of("The correspondence is not known: calibrate it first", "Korrespondenz unbekannt: erst kalibrieren");
+    Text::of("The correspondence is unknown: calibrate it first", "Korrespondenz unbekannt: erst kalibrieren");
 pub(in crate::console) const NEEDS_RECORDING: Text = Text::of("Nothing is recorded yet", "Noch nichts aufgezeichnet");
 pub(in crate::console) const NEEDS_GOALS: Text = Text::of(
     "Some goals are not met yet",
@@ -39,7 +39,7 @@ pub(in crate::console) const NEEDS_NETWORK: Text = Text::of("No network is train
 pub(in crate::console) const NEEDS_CHECK: Text =
     Text::of("The network is not checked yet", "Das Netz ist noch nicht geprüft");
 pub(in crate::console) const RECORDING_DISCARDED: Text = Text::of(
-    "Sensor, tool or correspondence have changed: the recording made with the old ones was discarded",
+    "The sensor, tool or correspondence has changed: the previous recording was discarded",
     "Sensor, Instrument oder Korrespondenz haben sich geändert: die alte Aufzeichnung wurde verworfen",
 );
 pub(in crate::console) const CANCELLED: Text =
@@ -49,7 +49,7 @@ pub(in crate::console) const NO_FOLDER: Text = Text::of(
     "Kein Ordner für die Aufzeichnung gefunden: NIMA_DATA_DIR setzen",
 );
 pub(in crate::console) const NO_CHECKED_NETWORK: Text =
-    Text::of("There is no checked network: go back", "Kein geprüftes Netz: zurückgehen");
+    Text::of("No checked network: go back", "Kein geprüftes Netz: zurückgehen");
 pub(in crate::console) const CHECK_TITLE: Text = Text::of("A new recording", "Neue Aufzeichnung");
 pub(in crate::console) const CHECK_HOVER: Text = Text::of(
     "Only data that were not used for training show how accurate the network is",
@@ -63,24 +63,24 @@ pub(in crate::console) const RECORD_MORE_HOVER: Text = Text::of(
 pub(in crate::console) const CHECK_PROGRESS: Text = Text::of("Rows of the check", "Zeilen der Prüfung");
 pub(in crate::console) const CHECK_JUDGING: Text = Text::of("The network is being evaluated", "Das Netz wird bewertet");
 pub(in crate::console) const CHECK_PAUSED: Text =
-    Text::of("Paused: press \"Go on with the check\"", "Pausiert: „Prüfung fortsetzen“ drücken");
+    Text::of("Paused: press \"Resume check\"", "Pausiert: „Prüfung fortsetzen“ drücken");
 pub(in crate::console) const CHECK_DONE: Text = Text::of("The check is complete", "Prüfung vollständig");
 pub(in crate::console) const PAUSE: Text = Text::of("Pause", "Pause");
-pub(in crate::console) const CHECK_GO_ON: Text = Text::of("Go on with the check", "Prüfung fortsetzen");
+pub(in crate::console) const CHECK_GO_ON: Text = Text::of("Resume check", "Prüfung fortsetzen");
 pub(in crate::console) const CHECK_AGAIN: Text = Text::of("Check again", "Erneut prüfen");
 pub(in crate::console) const CHECK_START: Text = Text::of("Start the check", "Prüfung starten");
 pub(in crate::console) const CHECK_WAIT: Text = Text::of("Wait for the result", "Ergebnis abwarten");
 pub(in crate::console) const VERDICT_HOVER: Text = Text::of(
-    "Compared with the paper's figures, on rows recorded after the training",
+    "Compared with the paper's results, on rows recorded after the training",
     "Verglichen mit den Werten des Artikels, auf Zeilen nach dem Training",
 );
 pub(in crate::console) const VERDICT_OVERRIDE: Text = Text::of(
-    "You can still keep it under your name in the next step",
+    "You can still accept it under your name in the next step",
     "Übernehmen unter eigenem Namen ist im nächsten Schritt möglich",
 );
 pub(in crate::console) const DOUBT_HOVER: Text = Text::of(
-    "Rows outside the range of the training data: there the network is not used and the fallback takes \
-    over. At most 10 % are allowed.",
+    "Rows outside the range of the training data: there the network is not used and the fallback applies. At \
+     most 10 % are allowed.",
     "Zeilen außerhalb des Bereichs der Trainingsdaten: dort gilt statt des Netzes der Ersatzwert. Höchstens 10 % sind \
      erlaubt.",
 );
@@ -100,9 +100,9 @@ pub(in crate::console) const NO_CONTACT_MEAN: Text =
 pub(in crate::console) const NO_CONTACT_SD: Text =
     Text::of("no contact:\nSD (paper 0.03)", "kontaktfrei:\nSD (Artikel 0.03)");
 pub(in crate::console) const REGRESSION_TITLE: Text =
-    Text::of("Predicted against measured force", "Vorhergesagte gegen gemessene Kraft");
+    Text::of("Predicted versus measured force", "Vorhergesagte gegen gemessene Kraft");
 pub(in crate::console) const REGRESSION_HOVER: Text = Text::of(
-    "Each point is one row; without error all points lie on the dashed line",
+    "Each point is one row; without error, all points would be on the dashed line",
     "Jeder Punkt ist eine Zeile; ohne Fehler liegen alle auf der gestrichelten Linie",
 );
 pub(in crate::console) const NO_CONTACT_TITLE: Text =
@@ -114,11 +114,11 @@ pub(in crate::console) const NO_CONTACT_HOVER: Text = Text::of(
 pub(in crate::console) const MEASURED_AXIS: Text = Text::of("Measured (N)", "Gemessen (N)");
 pub(in crate::console) const PREDICTED_AXIS: Text = Text::of("Predicted (N)", "Vorhersage (N)");
 pub(in crate::console) const REGRESSION_PLOT: Text = Text::of(
-    "Regression plot: predicted against measured force, three axes",
+    "Regression plot: predicted versus measured force, three axes",
     "Regressionsdiagramm: vorhergesagte gegen gemessene Kraft, drei Achsen",
 );
 pub(in crate::console) const NO_CONTACT_AXIS: Text = Text::of("Predicted (N)", "Vorhersage (N)");
-pub(in crate::console) const SHARE_AXIS: Text = Text::of("Share of rows (%)", "Anteil der Zeilen (%)");
+pub(in crate::console) const SHARE_AXIS: Text = Text::of("Rows (%)", "Anteil der Zeilen (%)");
 pub(in crate::console) const NO_CONTACT_PLOT: Text = Text::of(
     "Histogram of the predicted force without contact, three axes",
     "Histogramm der vorhergesagten Kraft ohne Kontakt, drei Achsen",
@@ -146,12 +146,12 @@ pub(in crate::console) const CHECKS_HOVER: Text = Text::of(
      aufgezeichnet",
 );
 pub(in crate::console) const CHECKS_TASK: Text = Text::of(
-    "Put the tissue on its sensor, put the instrument through the trocar, and hold its tip above the tissue",
+    "Put the tissue on its sensor, insert the instrument through the trocar, and hold its tip above the tissue",
     "Gewebe auf seinen Sensor legen, Instrument durch den Trokar führen und die Spitze über das Gewebe halten",
 );
 pub(in crate::console) const SOURCE_CORRESPONDENCE: Text = Text::of("Correspondence", "Korrespondenz");
 pub(in crate::console) const SOURCE_NO_CORRESPONDENCE: Text = Text::of(
-    "not known; press \"Calibrate correspondence…\" on the left",
+    "unknown; press \"Calibrate correspondence…\" on the left",
     "unbekannt; links „Korrespondenz kalibrieren…“ drücken",
 );
 pub(in crate::console) const RECORD_HOVER: Text = Text::of(
@@ -161,7 +161,7 @@ pub(in crate::console) const RECORD_HOVER: Text = Text::of(
 pub(in crate::console) const RECORD_TITLE: Text = Text::of("Do this now", "Jetzt ausführen");
 pub(in crate::console) const TRAIN_ANYWAY: Text = Text::of("Train anyway", "Trotzdem trainieren");
 pub(in crate::console) const TRAIN_ANYWAY_HOVER: Text = Text::of(
-    "Trains on the rows recorded so far. Such a network is not proven: you can keep it only under your name.",
+    "Trains on the rows recorded so far. Such a network is not proven: you can accept it only under your name.",
     "Trainiert mit den bisherigen Zeilen. Ein solches Netz ist nicht belegt: nur unter eigenem Namen zu übernehmen.",
 );
 pub(in crate::console) const TRAIN_ANYWAY_DISABLED_HOVER: Text =
@@ -172,18 +172,18 @@ pub(in crate::console) const RECORD_FIRST_STEP: Text = Text::of(
     "Dann „Aufzeichnung starten“ drücken: zuerst wird der Sensor unter dem Gewebe genullt",
 );
 pub(in crate::console) const RECORD_COMPLETE: Text = Text::of(
-    "All goals are met: go on to the training, or record more",
+    "All goals are met: continue to the training, or record more",
     "Alle Ziele erreicht: weiter zum Training, oder mehr aufzeichnen",
 );
 pub(in crate::console) const RECORD_PAUSED: Text =
-    Text::of("Paused: press \"Go on recording\"", "Pausiert: „Weiter aufzeichnen“ drücken");
-pub(in crate::console) const ADVICE_LATER: Text = Text::of("After that", "Danach");
-pub(in crate::console) const ADVICE_NOW: Text = Text::of("Still to do", "Noch zu tun");
+    Text::of("Paused: press \"Resume recording\"", "Pausiert: „Aufzeichnung fortsetzen“ drücken");
+pub(in crate::console) const ADVICE_LATER: Text = Text::of("Then", "Danach");
+pub(in crate::console) const ADVICE_NOW: Text = Text::of("To do", "Noch zu tun");
 pub(in crate::console) const RECORD_START: Text = Text::of("Start recording", "Aufzeichnung starten");
 pub(in crate::console) const GOALS_TITLE: Text = Text::of("Goals", "Ziele");
 pub(in crate::console) const GOALS_HOVER: Text = Text::of(
-    "The recording must cover everything that the network will meet in use: meet all of these goals",
-    "Die Aufzeichnung muss alles abdecken, was das Netz im Einsatz antrifft: alle Ziele erreichen",
+    "The recording must cover all conditions of later use: meet all of these goals",
+    "Die Aufzeichnung muss alle Bedingungen des Einsatzes abdecken: alle Ziele erreichen",
 );
 pub(in crate::console) const TILT_X: Text = Text::of("towards x", "nach x");
 pub(in crate::console) const TILT_Y: Text = Text::of("towards y (deg)", "nach y (deg)");
@@ -192,8 +192,9 @@ pub(in crate::console) const FORCE_ALONG: Text = Text::of("along the shaft (N)",
 pub(in crate::console) const TRAVEL_DEPTH: Text = Text::of("depth through the trocar", "Tiefe durch den Trokar");
 pub(in crate::console) const TRAVEL_SPEED: Text = Text::of("inward speed (mm/s)", "Tempo einwärts (mm/s)");
 pub(in crate::console) const COVERAGE_HOVER: Text = Text::of(
-    "The more rows a field holds, the brighter it is. The network can be trusted only where there are rows.",
-    "Je mehr Zeilen ein Feld enthält, desto heller ist es. Verlass auf das Netz ist nur dort, wo es Zeilen gibt.",
+    "The more rows a field contains, the brighter it is. The network is reliable only where rows were recorded.",
+    "Je mehr Zeilen ein Feld enthält, desto heller ist es. Das Netz ist nur dort zuverlässig, wo Zeilen \
+     aufgezeichnet sind.",
 );
 pub(in crate::console) const COVERAGE_TITLE: Text =
     Text::of("Coverage of the recording (brighter: more rows)", "Abdeckung der Aufzeichnung (heller: mehr Zeilen)");
@@ -222,7 +223,7 @@ pub(in crate::console) const LOSS_TITLE: Text =
     Text::of("Loss of each network, by epoch", "Verlust je Netz und Epoche");
 pub(in crate::console) const SIZE: Text = Text::of("Size", "Größe");
 pub(in crate::console) const SIZE_HOVER: Text = Text::of(
-    "Neurons in the hidden layers. Published figures are for the default size.",
+    "Neurons in the hidden layers. Published results are for the default size.",
     "Neuronen der verborgenen Schichten. Publizierte Werte gelten für die Standardgröße.",
 );
 pub(in crate::console) const TRAIN_STARTING: Text = Text::of("saving the recording", "Aufzeichnung wird gespeichert");
@@ -232,7 +233,7 @@ pub(in crate::console) const TRAINED_HOVER: Text =
     Text::of("This network is used in the check", "Dieses Netz geht in die Prüfung");
 pub(in crate::console) const ENSEMBLE: Text = Text::of("Ensemble", "Ensemble");
 pub(in crate::console) const ENSEMBLE_HOVER: Text = Text::of(
-    "The result is the mean of all networks; where they disagree, it is marked as in doubt",
+    "The result is the mean of all networks; where they disagree, it is marked as uncertain",
     "Das Ergebnis ist der Mittelwert aller Netze; wo sie sich widersprechen, gilt es als unsicher",
 );
 pub(in crate::console) const HELD_OUT_LOSS: Text = Text::of("Held-out loss", "Testverlust");
@@ -241,15 +242,15 @@ pub(in crate::console) const HELD_OUT_LOSS_HOVER: Text = Text::of(
     "Mittelwert aller Netze; 1 heißt: nichts gelernt",
 );
 pub(in crate::console) const TRAINED_STALE: Text = Text::of(
-    "New rows were recorded since: train again to use all of them",
+    "New rows were recorded since then: train again to use all rows",
     "Seither neue Zeilen aufgezeichnet: neu trainieren, um alle zu nutzen",
 );
 pub(in crate::console) const EPOCH_AXIS: Text = Text::of("Epoch", "Epoche");
 pub(in crate::console) const LOSS_AXIS: Text =
     Text::of("Mean square error (1: nothing learned)", "Mittl. quadr. Fehler (1: nichts gelernt)");
-pub(in crate::console) const JOB_FAILED: Text = Text::of("It failed. Try again.", "Fehlgeschlagen. Erneut versuchen.");
+pub(in crate::console) const JOB_FAILED: Text = Text::of("Failed. Try again.", "Fehlgeschlagen. Erneut versuchen.");
 pub(in crate::console) const PHASE_FULL: Text =
-    Text::of("the recording is full; go on to the training", "Aufzeichnung voll; weiter zum Training");
+    Text::of("the recording is full; continue to the training", "Aufzeichnung voll; weiter zum Training");
 pub(in crate::console) const PHASE_WRIST_SILENT: Text = Text::of(
     "not recording: the wrist sensor sends no data; connect it",
     "keine Aufzeichnung: Handgelenksensor sendet nichts; verbinden",
@@ -267,29 +268,25 @@ pub(in crate::console) const TASK_WORK_FREE: Text = Text::of(
 );
 pub(in crate::console) const TASK_REST: Text =
     Text::of("Lift the tip off the tissue and hold it still", "Spitze vom Gewebe abheben und stillhalten");
-pub(in crate::console) const DOUBT: Text = Text::of("In doubt", "Unsicher");
+pub(in crate::console) const DOUBT: Text = Text::of("Uncertain", "Unsicher");
 pub(in crate::console) const TRAIN_STOPPING: Text = Text::of("stopping", "wird beendet");
 pub(in crate::console) const TRAIN_DONE: Text = Text::of("done", "fertig");
-pub(in crate::console) const RECORD_GO_ON: Text = Text::of("Go on recording", "Weiter aufzeichnen");
+pub(in crate::console) const RECORD_GO_ON: Text = Text::of("Resume recording", "Aufzeichnung fortsetzen");
 pub(in crate::console) const PHASE_PAUSED: Text = Text::of("paused", "pausiert");
 pub(in crate::console) const PHASE_RECORDING: Text = Text::of("recording", "zeichnet auf");
 
-/// The check failed.
 pub(in crate::console) fn not_judged(error: &str) -> String {
     told!("The network could not be evaluated: {error}", "Das Netz ließ sich nicht bewerten: {error}")
 }
 
-/// The training failed.
 pub(in crate::console) fn not_trained(error: &str) -> String {
     told!("Not trained: {error}. The recording is kept.", "Nicht trainiert: {error}. Die Aufzeichnung bleibt.")
 }
 
-/// State of a recording.
 pub(in crate::console) fn state(phase: &str) -> String {
     told!("State: {phase}", "Zustand: {phase}")
 }
 
-/// Task of the person at the arm during the check.
 pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
     told!(
         "{work_s:.0} s of work on the tissue, then {free_s:.0} s without touching it",
@@ -297,22 +294,18 @@ pub(in crate::console) fn check_task(work_s: f64, free_s: f64) -> String {
     )
 }
 
-/// Result of the check.
 pub(in crate::console) fn verdict(reason: &str) -> String {
     told!("Verdict: {reason}", "Urteil: {reason}")
 }
 
-/// Share of samples for which the network was uncertain.
 pub(in crate::console) fn doubt(percent: f64, rows: usize) -> String {
     told!("{percent:.1} % of {rows} rows", "{percent:.1} % von {rows} Zeilen")
 }
 
-/// The background thread could not be started.
 pub(in crate::console) fn no_thread(error: &impl std::fmt::Display) -> String {
     told!("The background task could not be started: {error}", "Hintergrundaufgabe nicht gestartet: {error}")
 }
 
-/// A recording could not be saved.
 pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::fmt::Display) -> String {
     told!(
         "The recording could not be written to {}: {error}",
@@ -321,7 +314,6 @@ pub(in crate::console) fn not_written(path: &std::path::Path, error: &impl std::
     )
 }
 
-/// Why the check cannot be passed: the training data were incomplete.
 pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
     told!(
         "the recording used for training is incomplete ({goal}); record more",
@@ -329,7 +321,6 @@ pub(in crate::console) fn trained_on_too_little(goal: &str) -> String {
     )
 }
 
-/// Length of the recording, compared with the paper's.
 pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows: usize, paper_s: f64) -> String {
     told!(
         "{rows}, {seconds:.0} s (paper: {paper_rows}, {paper_s:.0} s)",
@@ -337,17 +328,14 @@ pub(in crate::console) fn rows_and_seconds(rows: usize, seconds: f64, paper_rows
     )
 }
 
-/// What is missing, and the requirement that it is for.
 pub(in crate::console) fn advice(when: &str, advice: &str, goal: &str) -> String {
     format!("{when}: {advice} ({goal})")
 }
 
-/// No rows are being recorded.
 pub(in crate::console) fn nothing_taken(why: &str) -> String {
     told!("not recording: {why}", "keine Aufzeichnung: {why}")
 }
 
-/// The sensor under the tissue is being zeroed.
 pub(in crate::console) fn taking_zero(percent: f64) -> String {
     told!(
         "setting the sensor under the tissue to zero: {percent:.0} %",
@@ -355,45 +343,37 @@ pub(in crate::console) fn taking_zero(percent: f64) -> String {
     )
 }
 
-/// Size of the training.
 pub(in crate::console) fn networks_on_rows(networks: usize, rows: usize) -> String {
     told!("{networks} networks on {rows} rows", "{networks} Netze mit {rows} Zeilen")
 }
 
-/// A requirement that the recording did not meet.
 pub(in crate::console) fn not_complete(goal: &str) -> String {
     told!(
-        "The recording is incomplete ({goal}): you can keep this network only under your name",
+        "The recording is incomplete ({goal}): you can accept this network only under your name",
         "Die Aufzeichnung ist unvollständig ({goal}): dieses Netz nur unter eigenem Namen zu übernehmen"
     )
 }
 
-/// Legend: loss of a network on held-out rows.
 pub(in crate::console) fn held_out(network: usize) -> String {
     told!("{network} held out", "{network} Test")
 }
 
-/// Legend: loss of a network on its training rows.
 pub(in crate::console) fn training(network: usize) -> String {
     told!("{network} training", "{network} Training")
 }
 
-/// The plot of the losses in one sentence.
 pub(in crate::console) fn losses(networks: usize, epochs: usize) -> String {
     told!("Losses of {networks} networks over {epochs} epochs", "Verluste von {networks} Netzen über {epochs} Epochen")
 }
 
-/// Progress of the check.
 pub(in crate::console) fn rows_of(rows: usize, asked: usize) -> String {
     told!("{rows} of {asked}", "{rows} von {asked}")
 }
 
-/// Size of a recording.
 pub(in crate::console) fn rows_and_time(rows: usize, seconds: f64) -> String {
     told!("{rows} rows, {seconds:.0} s", "{rows} Zeilen, {seconds:.0} s")
 }
 
-/// Progress of the training.
 pub(in crate::console) fn time_left(percent: f64, elapsed_s: f64, left_s: f64) -> String {
     told!(
         "{percent:.0} %, {elapsed_s:.0} s, at most {left_s:.0} s left",

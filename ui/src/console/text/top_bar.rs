@@ -10,7 +10,7 @@ pub(crate) const DISCONNECTED_MEANING: Text = Text::of(
     "Ein für die Kraftrückkopplung nötiges Gerät fehlt. Die Konsole verbindet es von selbst wieder.",
 );
 pub(in crate::console) const READY_MEANING: Text = Text::of(
-    "The drives are on but hold still, without force, until hand and tip are aligned",
+    "The drives are on but at rest, without force, until hand and tip are aligned",
     "Antriebe ein, aber still und ohne Kraft, bis Hand und Spitze ausgerichtet sind",
 );
 pub(crate) const CLUTCHED_MEANING: Text = Text::of(
@@ -18,7 +18,7 @@ pub(crate) const CLUTCHED_MEANING: Text = Text::of(
     "Kupplung gedrückt: die Hand bewegt sich frei, der Folgearm steht still, keine Kraft",
 );
 pub(in crate::console) const IDLE_MEANING: Text = Text::of(
-    "The loop measures only. No force and no motion until you engage it.",
+    "The loop only measures. No force and no motion until you engage it.",
     "Die Regelung misst nur. Vor dem Koppeln keine Kraft und keine Bewegung.",
 );
 pub(in crate::console) const ENGAGED_MEANING: Text = Text::of(
@@ -26,11 +26,11 @@ pub(in crate::console) const ENGAGED_MEANING: Text = Text::of(
     "Der Folgearm folgt der Hand, und die Hand spürt die Kraft",
 );
 pub(in crate::console) const STOPPED_MEANING: Text = Text::of(
-    "Stopped by the operator: no force, no motion. It stays stopped until you press Release stop.",
+    "Stopped by the operator: no force, no motion. The loop stays stopped until you press Release stop.",
     "Vom Bediener angehalten: keine Kraft, keine Bewegung. Bleibt so, bis der Halt gelöst wird.",
 );
 pub(in crate::console) const FAULT_MEANING: Text = Text::of(
-    "Stopped by a fault: no force, no motion. It stays stopped until you press Release stop.",
+    "Stopped by a fault: no force, no motion. The loop stays stopped until you press Release stop.",
     "Durch eine Störung angehalten: keine Kraft, keine Bewegung. Bleibt so, bis der Halt gelöst wird.",
 );
 pub(in crate::console) const STOP: Text = Text::of("Stop", "Halt");
@@ -54,18 +54,16 @@ pub(in crate::console) const NOT_ENGAGED: Text = Text::of("Not engaged", "Nicht 
 pub(in crate::console) const NOT_RELEASED: Text = Text::of("Not released", "Nicht gelöst");
 pub(in crate::console) const NOT_SET: Text = Text::of("Not set", "Nicht gesetzt");
 
-/// A refused command: what was not done, for which arm if there are two, why, and what to do.
+/// Refused command; `arm` is empty for a rig with one arm.
 pub(in crate::console) fn refused(what: &str, arm: &str, cause: &str, cure: &str) -> String {
     let arm = if arm.is_empty() { String::new() } else { told!(" ({arm} arm)", " (Arm {arm})") };
     format!("{what}{arm}: {cause}; {cure}")
 }
 
-/// A missing device.
 pub(in crate::console) fn device(name: &str, cause: &str) -> String {
     format!("{name}: {cause}")
 }
 
-/// Names of scene and rig.
 pub(in crate::console) fn scene_and_rig(scene: &str, rig: &str) -> String {
     told!("Scene: {scene}\nRig: {rig}", "Szene: {scene}\nAufbau: {rig}")
 }
@@ -75,7 +73,6 @@ pub(in crate::console) fn state_meaning(meaning: &str) -> String {
     told!("State of the control loop\n{meaning}", "Zustand der Regelung\n{meaning}")
 }
 
-/// State of one of two arms that differ.
 pub(in crate::console) fn state_of_side(side: &str, state: &str) -> String {
     format!("{side}: {state}")
 }

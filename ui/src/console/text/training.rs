@@ -1,22 +1,16 @@
-//! How far a trial of a training scene has come.
+//! Progress of a trial of a training scene.
 
 use crate::language::{Text, told, word};
 
-/// While lumps are looked for: how many places were marked, and the keys while the instrument is led.
 pub(in crate::console) fn lumps_marked(marked: u32, is_led: bool) -> String {
     let keys = if is_led {
-        word(
-            " (X marks, D ends the trial, N begins it anew)",
-            " (X markiert, D beendet den Versuch, N beginnt ihn \
-         neu)",
-        )
+        word(" (X marks, D ends the trial, N restarts it)", " (X markiert, D beendet den Versuch, N startet ihn neu)")
     } else {
         ""
     };
     told!("Places marked: {marked}{keys}", "Markierte Stellen: {marked}{keys}")
 }
 
-/// After the trial.
 pub(in crate::console) fn lumps_found(found: u32, lumps: u32, mark_false: u32) -> String {
     told!(
         "Lumps found: {found} of {lumps}, false marks: {mark_false}",
@@ -24,14 +18,13 @@ pub(in crate::console) fn lumps_found(found: u32, lumps: u32, mark_false: u32) -
     )
 }
 
-/// On the wire.
 pub(in crate::console) fn wire(touches: u32, share: f64, ended: bool, is_led: bool) -> String {
-    let keys = if is_led { word(" (N begins the trial anew)", " (N beginnt den Versuch neu)") } else { "" };
+    let keys = if is_led { word(" (N restarts the trial)", " (N startet den Versuch neu)") } else { "" };
     if ended {
         return told!("Goal reached, touches: {touches}{keys}", "Ziel erreicht, Berührungen: {touches}{keys}");
     }
     told!(
-        "Way to the goal: {:.0} %, touches: {touches}{keys}",
+        "Path to the goal: {:.0} %, touches: {touches}{keys}",
         "Weg zum Ziel: {:.0} %, Berührungen: {touches}{keys}",
         100.0 * share
     )
@@ -41,14 +34,13 @@ pub(in crate::console) const JAWS_ABOVE: Text = Text::of("above a ring", "über 
 pub(in crate::console) const JAWS_AROUND: Text = Text::of("around a ring", "um einen Ring");
 pub(in crate::console) const JAWS_HOLD: Text = Text::of("holds a ring", "hält einen Ring");
 
-/// The instrument that is led, and what its jaws do with a ring.
 pub(in crate::console) fn jaws(side: &str, with_ring: Option<&str>) -> String {
     let with_ring = with_ring.map(|words| format!(" {words}")).unwrap_or_default();
     let after = side.to_lowercase();
     told!("{side} instrument{with_ring}", "Instrument {after}{with_ring}")
 }
 
-/// Peg transfer: `led` from [`jaws`], and how many rings were handed over in mid-air, put on pegs, and dropped.
+/// Peg transfer; `led` from [`jaws`]. Counts of rings passed in mid-air, placed on pegs and dropped.
 pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u32; 3], ended: bool) -> String {
     let done = if ended { word("Task done. ", "Fertig. ") } else { "" };
     let led = led.map(|words| format!("{words}. ")).unwrap_or_default();
@@ -59,6 +51,7 @@ pub(in crate::console) fn rings(led: Option<&str>, [passed, placed, dropped]: [u
 }
 
 pub(in crate::console) const CHOOSE_MATCHED: Text = Text::of(
-    "Two hands on one ring need the mode Matched: with this one the loop ends in a fault",
-    "Zwei Hände an einem Ring brauchen den Modus Abgeglichen: mit diesem endet die Regelung in einer Störung",
+    "Two hands on one ring require the mode Matched: in the current mode the loop ends in a fault",
+    "Zwei Hände an einem Ring erfordern den Modus Abgeglichen: im aktuellen Modus endet die Regelung in einer \
+     Störung",
 );

@@ -12,7 +12,7 @@ pub(crate) const NEEDS_CHECKS: Text = Text::of(
  bestanden",
 );
 pub(in crate::console) const OPTIONS_HOVER: Text = Text::of(
-    "Leave both off unless you know that your rig needs them, or the result says so",
+    "Leave both off unless your rig is known to need them or the result asks for them",
     "Beide aus lassen, außer der Aufbau braucht sie sicher oder das Ergebnis verlangt es",
 );
 pub(in crate::console) const OPTIONS_TITLE: Text = Text::of("How this rig is built", "Bauweise dieses Aufbaus");
@@ -24,13 +24,15 @@ pub(in crate::console) const STEP_SAVE_HOVER: Text = Text::of(
     "Saves the result for this sensor and this tool, with its errors",
     "Speichert das Ergebnis mit seinen Fehlern für diesen Sensor und dieses Instrument",
 );
-pub(crate) const STEP_SAVE_IN_RIG_HOVER: Text =
-    Text::of("Writes lens and place into the rig file", "Schreibt Objektiv und Lage in die Aufbaudatei");
+pub(crate) const STEP_SAVE_IN_RIG_HOVER: Text = Text::of(
+    "Writes the lens and the camera position to the rig file",
+    "Schreibt Objektiv und Lage in die Aufbaudatei",
+);
 pub(in crate::console) const GRAVITY: Text = Text::of("Gravity", "Schwerkraft");
 pub(in crate::console) const CORRESPONDENCE: Text = Text::of("Correspondence", "Korrespondenz");
 pub(in crate::console) const CAMERA: Text = Text::of("Camera", "Kamera");
 pub(in crate::console) const CAMERA_MEANING: Text = Text::of(
-    "Finds the endoscope's lens and its place, so that forces are drawn where the tip is seen",
+    "Finds the endoscope's lens and position, so that forces are drawn at the visible tip",
     "Bestimmt Objektiv und Lage des Endoskops, damit Kräfte dort erscheinen, wo die Spitze zu sehen ist",
 );
 pub(in crate::console) const TIP_FORCE: Text = Text::of("Tip force", "Kraft an der Spitze");
@@ -52,7 +54,7 @@ pub(in crate::console) const START_OVER: Text = Text::of("Start over", "Neu begi
 pub(in crate::console) const START_OVER_HOVER: Text =
     Text::of("Deletes all data recorded in this wizard", "Löscht alle in diesem Assistenten aufgezeichneten Daten");
 pub(in crate::console) const SAVE_HOVER: Text = Text::of(
-    "The file is valid for this sensor and this tool only, and holds the measured errors",
+    "The file is valid only for this sensor and tool, and contains the measured errors",
     "Die Datei gilt nur für diesen Sensor und dieses Instrument und enthält die gemessenen Fehler",
 );
 pub(in crate::console) const SENSOR: Text = Text::of("Sensor", "Sensor");
@@ -62,18 +64,17 @@ pub(in crate::console) const TOOL: Text = Text::of("Tool", "Instrument");
 pub(in crate::console) const TOOL_HOVER: Text = Text::of("Tool mounted on the sensor", "Instrument am Sensor");
 pub(in crate::console) const SAVE_AND_USE: Text = Text::of("Save and use", "Speichern und nutzen");
 pub(in crate::console) const NOT_PROVEN: Text = Text::of(
-    "This calibration is not proven. You can keep it only under your name, which is written into the file.",
+    "This calibration is not proven. You can accept it only under your name, which is written to the file.",
     "Diese Kalibrierung ist nicht belegt. Sie lässt sich nur unter eigenem Namen übernehmen; er kommt in die Datei.",
 );
 pub(in crate::console) const YOUR_NAME: Text = Text::of("Your name", "Ihr Name");
 pub(in crate::console) const REASON: Text = Text::of("Reason", "Grund");
-pub(in crate::console) const SAVE_ANYWAY: Text =
-    Text::of("Save in spite of the verdict", "Trotz des Urteils speichern");
+pub(in crate::console) const SAVE_ANYWAY: Text = Text::of("Save despite the verdict", "Trotz des Urteils speichern");
 pub(in crate::console) const SAVE_ANYWAY_DISABLED_HOVER: Text =
     Text::of("Enter a name and a reason first", "Erst Name und Grund eingeben");
 pub(in crate::console) const POSE_PICTURE: Text =
-    Text::of("Picture of the pose to take", "Bild der einzunehmenden Pose");
-pub(in crate::console) const POSE_HELD: Text = Text::of("solid: the tool now", "voll: Instrument jetzt");
+    Text::of("Drawing of the required pose", "Zeichnung der einzunehmenden Pose");
+pub(in crate::console) const POSE_HELD: Text = Text::of("solid: current tool", "voll: Instrument jetzt");
 pub(in crate::console) const POSE_UNKNOWN: Text =
     Text::of("the arm does not report the tool's orientation", "der Arm meldet die Orientierung des Instruments nicht");
 pub(in crate::console) const SWITCH_DISABLED_HOVER: Text = Text::of(
@@ -81,52 +82,44 @@ pub(in crate::console) const SWITCH_DISABLED_HOVER: Text = Text::of(
     "Zum Ändern neu beginnen: die aufgezeichneten Daten hängen davon ab",
 );
 pub(in crate::console) const MET: Text = Text::of("met", "erreicht");
-pub(in crate::console) const FINE: Text = Text::of("fine", "OK");
+pub(in crate::console) const FINE: Text = Text::of("passed", "OK");
 pub(in crate::console) const WAITING: Text = Text::of("waiting", "wartet");
 pub(in crate::console) const NO_RESULT: Text = Text::of("No result", "Kein Ergebnis");
 pub(in crate::console) const FOLLOWING_CHECK: Text = Text::of("Next: ready check", "Weiter: Startprüfung");
 pub(in crate::console) const DONE: Text = Text::of("(done)", "(fertig)");
 
-/// Caption of the picture of a pose.
 pub(in crate::console) fn tilt_off(tilt_deg: f64) -> String {
     told!(
-        "outline: target   solid: tool now   tilt error {tilt_deg:.0} deg",
+        "outline: target   solid: current tool   tilt error {tilt_deg:.0} deg",
         "Umriss: Ziel   voll: Instrument jetzt   Neigungsfehler {tilt_deg:.0} deg"
     )
 }
 
-/// Caption of the picture of directions.
 pub(in crate::console) fn rings_and_discs(name: &str) -> String {
     told!("{name} (rings: to do, discs: recorded)", "{name} (Ringe: offen, Scheiben: aufgezeichnet)")
 }
 
-/// A map in one sentence.
 pub(in crate::console) fn fields_filled(title: &str, filled: usize, fields: usize) -> String {
     told!("{title}: {filled} of {fields} fields filled", "{title}: {filled} von {fields} Feldern gefüllt")
 }
 
-/// A check that has passed, with the measured value.
 pub(in crate::console) fn met(measured: &str) -> String {
-    told!("{measured}, fine", "{measured}, OK")
+    told!("{measured}, passed", "{measured}, OK")
 }
 
-/// Button that goes on with the calibration that is to be made after a saved one.
 pub(in crate::console) fn following(arm: &str, calibration: &str) -> String {
     let after = arm.to_lowercase();
     told!("Next: {arm} arm, {}", "Weiter: Arm {after}, {}", within(calibration))
 }
 
-/// Title of a wizard.
 pub(in crate::console) fn title(wizard: &str) -> String {
     told!("{wizard} calibration", "Kalibrierung: {wizard}")
 }
 
-/// A picture of directions in one sentence.
 pub(in crate::console) fn recorded(name: &str, count: usize) -> String {
     told!("{name}: {count} recorded", "{name}: {count} aufgezeichnet")
 }
 
-/// Where values were written.
 pub(in crate::console) fn written(path: &Path) -> String {
     told!("Saved in {}", "Gespeichert in {}", path.display())
 }

@@ -1,20 +1,20 @@
-//! A wizard without a screen: the same sessions and the same order of steps, taken on as soon as a step has all that it asks for.
+//! Runs a wizard without a screen: the same sessions and the same order of steps; each step ends as soon as it is complete.
 
 use super::{Binding, CorrespondenceWizard, FrameWizard, Kind, Saving, TipForceWizard, Which, Wizards};
 
-/// What came of attending to the open wizard.
+/// Result of attending to the open wizard.
 #[derive(Debug)]
 pub enum Attended {
-    /// It goes on, in this step; and what the wizard has to tell.
+    /// In progress, in this step, with the message of the wizard.
     Working(&'static str, Option<String>),
-    /// It is proven, and to be saved.
+    /// Proven, and ready to be saved.
     Proven(Saving),
-    /// It has ended without proof, for this reason.
+    /// Ended without proof, for this reason.
     NotProven(String),
 }
 
 impl Wizards {
-    /// Does what a technician does with the open wizard; `None` if none is open.
+    /// Acts as the technician in the open wizard; `None` if none is open.
     pub fn attend(&mut self, binding: &Binding) -> Option<Attended> {
         let which = self.open?;
         let wizard = self.the_mut(which)?;
@@ -42,8 +42,9 @@ impl Wizards {
         })
     }
 
-    /// Pushes and recordings use the gravity calibration; those made with the previous one must not be mixed with new ones. What the other
-    /// wizards of the frames have recorded belongs to the rig file as it was.
+    /// Discards data that depend on the saved calibration. Pushes and recordings use the gravity calibration; those made with
+    /// the previous one must not be mixed with new ones. The recordings of the other frame wizards belong to the previous rig
+    /// file.
     pub(super) fn forget_what_rests_on(&mut self, saving: &Saving) {
         if matches!(saving, Saving::Gravity(_)) {
             self.correspondence = CorrespondenceWizard::default();

@@ -9,7 +9,7 @@ use crate::console::{
     widgets::{Sign, sign_ui},
 };
 
-/// One check with its measured value, or with cause and cure.
+/// One check with its measured value, or with cause and remedy.
 pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
     let (what, colour, words) = match &check.state {
         CheckState::Good if check.measured.is_empty() => {
@@ -22,7 +22,7 @@ pub(super) fn check_ui(ui: &mut Ui, check: &Check) {
     line_ui(ui, what, colour, &format!("{}: {words}", sentence(check.name)));
 }
 
-/// A check that has passed, or what to do.
+/// A passed check, or the instruction.
 pub(crate) fn check_line(ui: &mut Ui, name: &str, met: bool, otherwise: &str) {
     let (what, colour, words) = if met {
         (Sign::Disc, theme::now().engaged, text::wizards::FINE.get())
@@ -44,7 +44,7 @@ fn line_ui(ui: &mut Ui, what: Sign, colour: egui::Color32, words: &str) {
     });
 }
 
-/// A switch that describes the rig; returns its new state if it was pressed.
+/// A switch that describes the rig; returns its new state when pressed.
 pub(crate) fn switch_ui(ui: &mut Ui, free: bool, on: bool, name: &str, meaning: &str) -> Option<bool> {
     let mut wanted = on;
     let switch = ui.add_enabled(free, Checkbox::new(&mut wanted, name));

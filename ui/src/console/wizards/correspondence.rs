@@ -27,11 +27,10 @@ use crate::{
     words::{self, Words as _, three_digits},
 };
 
-/// Fewest pushes for which a fit is shown.
+/// Minimum number of pushes for a fit.
 const PUSHES_MIN: usize = 6;
-/// Number of pushes requested: one in each direction.
+/// Requested number of pushes: one in each direction.
 const PUSHES_ASKED: usize = TARGETS.len();
-/// Steps of this wizard.
 const STEPS: [Step; 4] = [
     Step { name: text::wizards::STEP_CHECK, meaning: text::correspondence::STEP_CHECK_HOVER },
     Step { name: text::correspondence::STEP_PUSHES, meaning: text::correspondence::STEP_PUSHES_HOVER },
@@ -42,7 +41,7 @@ const CHECK: usize = 0;
 const PUSHES: usize = 1;
 const RESULT: usize = 2;
 
-/// Which sources delivered with the wrist sensor's sample in the last tick.
+/// Sources that delivered together with the wrist sensor's sample in the last tick.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sources {
     gravity: bool,
@@ -50,14 +49,13 @@ struct Sources {
     chain: bool,
 }
 
-/// State of the wizard.
 #[derive(Debug)]
 pub struct CorrespondenceWizard {
     session: CorrespondenceSession,
     frame: Frame,
     /// `None` while the wrist sensor is silent.
     sources: Option<Sources>,
-    /// Time of the loop, which starts at zero with every start of it, and time of the session, which continues.
+    /// Loop time, which starts at zero with each start of the loop, and session time, which continues.
     clock_s: (f64, f64),
     report: Report<CorrespondenceReport>,
 }
@@ -86,7 +84,7 @@ impl CorrespondenceWizard {
         self.frame.saved = None;
     }
 
-    /// The next direction to request: first those without a push, then all of them in turn.
+    /// The next direction to request: first those without a push, then all in turn.
     fn wanted(&self) -> PushTarget {
         self.session.target().unwrap_or(TARGETS[self.session.pushes() % TARGETS.len()])
     }
@@ -127,7 +125,7 @@ impl CorrespondenceWizard {
             let Some(Sources { gravity, tissue, chain }) = self.sources else {
                 let why = text::correspondence::NEEDS_WRIST_SENSOR.get();
                 check_line(ui, text::correspondence::CHECK_WRIST.get(), false, why);
-                // Without the wrist sensor nothing is known of the others.
+                // Without the wrist sensor the state of the others is unknown.
                 for name in names {
                     waiting_line(ui, name);
                 }
@@ -242,7 +240,7 @@ impl Wizard for CorrespondenceWizard {
         let (begin_s, last_s) = self.clock_s;
         let mut now_s = begin_s + tick.t_s;
         if now_s < last_s {
-            // The loop was restarted: a push under way has a gap and is discarded.
+            // The loop was restarted: an unfinished push has a gap and is discarded.
             now_s = last_s + 1e-3;
             self.clock_s.0 = now_s - tick.t_s;
             f1_n = None;
@@ -308,7 +306,7 @@ impl Wizard for CorrespondenceWizard {
     }
 }
 
-/// Progress of the push, and what to do.
+/// Progress of the push, and the instruction.
 fn phase_words(phase: &Phase) -> (f64, String) {
     match phase {
         Phase::Missing(missing) => (0.0, missing.words().to_owned()),

@@ -14,7 +14,6 @@ use crate::console::{
 };
 use crate::language::Text;
 
-/// One step of a wizard.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     pub(crate) name: Text,
@@ -26,7 +25,7 @@ pub(crate) struct Step {
 pub(crate) enum Wish {
     GoTo(usize),
     StartOver,
-    /// Go on elsewhere.
+    /// Continue elsewhere.
     GoOn(GoOn),
 }
 
@@ -36,18 +35,17 @@ pub(crate) struct Frame {
     pub(crate) step: usize,
     /// Name of the person who overrides the verdict.
     name: String,
-    /// The reason.
     why: String,
-    /// What is told of saving: done, or why not.
+    /// Result of saving.
     pub(crate) saved: Option<Result<String, String>>,
-    /// What is to be done after what was saved.
+    /// The step after saving.
     following: Option<GoOn>,
-    /// The step or what is saved has changed since [`Frame::take_changed`].
+    /// The step or the saved data have changed since [`Frame::take_changed`].
     pub(super) changed: bool,
 }
 
 impl Frame {
-    /// Shows the result of saving, and what is to be done after it.
+    /// Shows the result of saving, and the step after it.
     pub(super) fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
         self.saved = Some(told);
         self.changed = true;
@@ -58,12 +56,12 @@ impl Frame {
         matches!(self.saved, Some(Ok(_)))
     }
 
-    /// What is to be done next; `None` before something was saved.
+    /// `None` before anything was saved.
     fn following(&self) -> Option<GoOn> {
         self.following.filter(|_| self.is_saved())
     }
 
-    /// Whether the step or what is saved has changed since the last call.
+    /// Whether the step or the saved data have changed since the last call.
     pub(crate) const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.changed, false)
     }
@@ -82,31 +80,31 @@ pub(crate) trait Wizard: std::fmt::Debug {
 
     /// Adds one tick of a loop of this rate (Hz).
     fn tick(&mut self, tick: &Tick, rate_hz: f64);
-    /// Present instruction to the person at the arm.
+    /// Current instruction to the person at the arm.
     fn prompt(&self) -> Prompt;
-    /// Whether the next step may start, or why not.
+    /// Whether the next step may start; otherwise the reason.
     fn may_go_on(&self, binding: &Binding) -> Result<(), &'static str>;
     /// Draws a step before the last.
     fn step_ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Wish>;
-    /// The evidence that the result is good, as text; `None` if it can only be saved with an override.
+    /// Evidence that the result is good, as text; `None` if it can only be saved with an override.
     fn proof(&self) -> Option<String>;
-    /// The record to be saved, if there is one, with its verdict before any override.
+    /// The record to save, if there is one, with its verdict before any override.
     fn made(&self, binding: &Binding) -> Option<Saving>;
     /// Removes the data, but keeps the settings of the rig.
     fn start_over(&mut self);
 
-    /// Looks at the endoscope's newest picture.
+    /// Receives the endoscope's newest image.
     fn see(&mut self, _newest: Option<(u64, Arc<Picture>)>, _ctx: &egui::Context) {}
 
     /// Whether the result belongs to the wrist sensor and its tool.
     fn is_of_a_sensor(&self) -> bool {
         true
     }
-    /// Whether this step has all that it asks for.
+    /// Whether this step is complete.
     fn is_done(&self) -> bool {
         true
     }
-    /// Does what a technician without a screen does in this step; returns whether it is done.
+    /// Acts as a technician without a screen in this step; returns whether it is complete.
     fn attend(&mut self, _binding: &Binding) -> bool {
         self.is_done()
     }
@@ -121,7 +119,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
     fn before_saving(&self, _ui: &mut Ui) -> bool {
         true
     }
-    /// Draws the part below the last step; returns what else is to be saved.
+    /// Draws the part below the last step; returns further data to save.
     fn after_saving(&mut self, _ui: &mut Ui) -> Option<Saving> {
         None
     }
@@ -130,7 +128,7 @@ pub(crate) trait Wizard: std::fmt::Debug {
     }
 }
 
-/// Draws a wizard; returns what is asked for.
+/// Draws a wizard; returns its request.
 pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
     wizard.refresh(binding);
     let steps = wizard.steps();
@@ -166,13 +164,13 @@ pub(super) fn wizard_ui(wizard: &mut dyn Wizard, ui: &mut Ui, binding: &Binding)
     saving.map(Asked::Save)
 }
 
-/// Whether and where the button for the next step leads.
+/// State of the button for the next step.
 struct GoingOn {
-    /// Whether the next step may start, or why not.
+    /// Whether the next step may start; otherwise the reason.
     may: Result<(), &'static str>,
-    /// The present step has all that it asks for.
+    /// The current step is complete.
     is_done: bool,
-    /// What follows after the last step.
+    /// The step after the last one.
     following: Option<GoOn>,
 }
 
@@ -222,8 +220,8 @@ fn steps_ui(ui: &mut Ui, steps: &[Step], now: usize, going_on: &GoingOn) -> Opti
     wish
 }
 
-/// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true when it is pressed.
-/// Without `proof` a name and a reason are required.
+/// The last step of every wizard: sensor and tool of the record, if it is bound to them, and the save button; returns true
+/// when pressed. Without `proof` a name and a reason are required.
 fn save_card(ui: &mut Ui, binding: Option<&Binding>, proof: Option<&str>, frame: &mut Frame) -> bool {
     let meaning =
         if binding.is_some() { text::wizards::SAVE_HOVER.get() } else { text::wizards::STEP_SAVE_IN_RIG_HOVER.get() };

@@ -32,11 +32,10 @@ use crate::{
 
 /// Limit of the 95th percentile of the force in free motion, N; includes the noise of a sample.
 const FREE_MOTION_LIMIT_N: f64 = 0.25;
-/// Samples of free motion that a technician without a screen takes.
+/// Samples of free motion that a technician without a screen records.
 const FREE_MOTION_SAMPLES: u64 = 8000;
-/// Fewest poses for a fit.
+/// Minimum number of poses for a fit.
 const POSES_MIN: usize = 6;
-/// Steps of this wizard.
 const STEPS: [Step; 5] = [
     Step { name: text::wizards::STEP_CHECK, meaning: text::gravity::STEP_CHECK_HOVER },
     Step { name: text::gravity::STEP_POSES, meaning: text::gravity::STEP_POSES_HOVER },
@@ -48,10 +47,9 @@ const CHECK: usize = 0;
 const POSES: usize = 1;
 const RESULT: usize = 2;
 const FREE_MOTION: usize = 3;
-/// A shorter touch is a hand that lets go, as long as the result is good, s.
+/// A shorter touch is a hand that releases the tool, as long as the result is good, s.
 const TOUCHED_S: f64 = 2.0;
 
-/// State of the wizard.
 #[derive(Debug)]
 pub struct GravityWizard {
     session: GravitySession,
@@ -176,7 +174,7 @@ impl GravityWizard {
         });
     }
 
-    /// Tells that the tool was touched: who looked away learns of it later.
+    /// Shows that the tool was touched, even afterwards.
     fn touched_ui(&self, ui: &mut Ui) {
         let touched_s = self.session.touched_s();
         let is_bad = self.good_report().is_some_and(|report| report.verdict != Verdict::Accepted);

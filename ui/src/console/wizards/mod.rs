@@ -1,8 +1,7 @@
-//! Calibration wizards, which guide a single technician step by step from an uncalibrated sensor to a verified
-//! calibration.
+//! Calibration wizards, which guide a single technician step by step from an uncalibrated sensor to a verified calibration.
 //!
-//! A wizard receives every tick, gives the person at the arm instructions ([`Prompt`]) and returns a record when it is
-//! to be saved. It does not change the loop; saving puts the new calibration in force.
+//! A wizard receives every tick, gives the person at the arm instructions ([`Prompt`]) and returns a record to save. It does
+//! not change the loop; saving activates the new calibration.
 
 mod attend;
 pub(crate) mod checks;
@@ -55,15 +54,13 @@ use crate::{
 /// Sensor, tool and existing data for a new calibration.
 #[derive(Clone, Debug, Default)]
 pub struct Binding {
-    /// Serial number of the wrist sensor.
     pub sensor: String,
-    /// Name of the tool.
     pub tool: String,
-    /// Now, ISO 8601, UTC.
+    /// Current time, ISO 8601, UTC.
     pub date: String,
     /// Rotation of the sensor under the tissue, if known.
     pub correspondence: Option<Correspondence>,
-    /// Store of calibrations and their data; `None` if no folder is known.
+    /// Store of calibrations and their data; `None` without a folder.
     pub store: Option<Store>,
     /// The arm in its rig file; `None` if the rig has no such arm.
     pub subject: Option<Subject>,
@@ -78,22 +75,19 @@ impl Binding {
     }
 }
 
-/// Which wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// Weight and bias.
     Gravity,
     /// Rotation between the sensor under the tissue and the one at the wrist.
     Correspondence,
     /// The network that removes the trocar's friction.
     TipForce,
-    /// A calibration of the frames.
     Frame(Kind),
-    /// Lens and place of the endoscope's camera.
+    /// Lens and position of the endoscope's camera.
     Camera,
 }
 
-/// As an argument of a command: by one word, whether it is of the frames or not.
+/// Each wizard is one word on the command line, including the frame calibrations.
 impl ValueEnum for Which {
     fn value_variants<'a>() -> &'a [Self] {
         &Self::ALL
@@ -112,7 +106,7 @@ impl ValueEnum for Which {
 }
 
 impl Which {
-    /// All wizards, in the order of use: what is measured at the wrist is turned by the frames, so these come first.
+    /// All wizards, in the order of use: the frames rotate the forces measured at the wrist, so they come first.
     pub const ALL: [Self; 10] = [
         Self::Frame(Kind::Mount),
         Self::Frame(Kind::Tip),
@@ -126,13 +120,12 @@ impl Which {
         Self::Camera,
     ];
 
-    /// Those that this build has.
+    /// Wizards of this build.
     pub(crate) fn built() -> impl Iterator<Item = Self> {
         let has_camera = extras::part(Extra::camera_wizard).is_some();
         Self::ALL.into_iter().filter(move |which| has_camera || *which != Self::Camera)
     }
 
-    /// Name on buttons.
     pub fn name(self) -> &'static str {
         match self {
             Self::Gravity => text::wizards::GRAVITY.get(),
@@ -143,7 +136,6 @@ impl Which {
         }
     }
 
-    /// Its purpose.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Gravity => text::wizards::GRAVITY_MEANING.get(),
@@ -164,8 +156,8 @@ impl Which {
         }
     }
 
-    /// Whether this scene has a person who guides the arm and everything else that the wizard needs, so that it need
-    /// not be changed.
+    /// Whether this scene has a person who guides the arm, and everything else that the wizard needs, so that it need not be
+    /// changed.
     pub const fn suits(self, scene: &Scene) -> bool {
         let guided = scene.person.is_some() && scene.wrist.is_some();
         match self {
@@ -180,32 +172,28 @@ impl Which {
 /// One calibration of one arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// The arm.
     pub side: Side,
-    /// The wizard that makes it.
+    /// The wizard for it.
     pub which: Which,
     /// The handle's part of a view.
     pub by_handle: bool,
 }
 
 impl Wanted {
-    /// Name of the calibration.
     pub fn name(&self) -> &'static str {
         if self.by_handle { text::overview::HANDLE.get() } else { self.which.name() }
     }
 }
 
-/// What is to be done after a calibration.
+/// The step after a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GoOn {
-    /// Another calibration.
     Calibrate(Wanted),
     /// Nothing is missing: the ready check.
     Check,
 }
 
 impl GoOn {
-    /// Name on a button.
     pub(in crate::console) fn words(self) -> String {
         match self {
             Self::Calibrate(wanted) => text::wizards::following(side_name(wanted.side), wanted.name()),
@@ -214,34 +202,31 @@ impl GoOn {
     }
 }
 
-/// What the technician asks for on a wizard's page.
+/// The technician's request on a wizard's page.
 #[derive(Clone, Debug)]
 pub enum Asked {
-    /// Save this and use it.
     Save(Saving),
-    /// Go on elsewhere.
+    /// Continue elsewhere.
     GoOn(GoOn),
 }
 
 /// A record to be saved and used.
 #[derive(Clone, Debug)]
 pub enum Saving {
-    /// A gravity calibration.
     Gravity(Box<GravityRecord>),
-    /// A correspondence.
     Correspondence(Box<CorrespondenceRecord>),
     /// A network with its check.
     TipForce(Box<Model>),
-    /// A frame calibration, with what it changes in the rig file.
+    /// A frame calibration, with its changes to the rig file.
     Frame(Box<FrameSaving>),
-    /// Lens and place of the camera, as they change the rig file.
+    /// Lens and position of the camera, as changes to the rig file.
     Camera(Vec<RigChange>),
-    /// Values that are put back into the rig file.
+    /// Values to restore in the rig file.
     Undo(Vec<RigChange>),
 }
 
 impl Saving {
-    /// What was judged of it; a network without a check has no judgement.
+    /// Its judgement; a network without a check has none.
     fn judgement_mut(&mut self) -> Option<&mut Judgement> {
         match self {
             Self::Gravity(record) => Some(&mut record.judgement),
@@ -256,7 +241,6 @@ impl Saving {
 /// All wizards; each keeps its data until it is reset.
 #[derive(Debug)]
 pub struct Wizards {
-    /// The one that is open.
     pub open: Option<Which>,
     gravity: GravityWizard,
     correspondence: CorrespondenceWizard,
@@ -281,7 +265,6 @@ impl Default for Wizards {
 }
 
 impl Wizards {
-    /// With this one open.
     pub fn at(which: Which) -> Self {
         Self { open: Some(which), ..Self::default() }
     }
@@ -313,14 +296,14 @@ impl Wizards {
         }
     }
 
-    /// Shows the newest picture of the endoscope to a wizard that looks at it; asks for it only then.
+    /// Passes the endoscope's newest image to a wizard that uses it; `newest` is called only then.
     pub fn see(&mut self, newest: impl FnOnce() -> Option<(u64, Arc<Picture>)>, ctx: &egui::Context) {
         if let Some(wizard) = self.camera.as_mut().filter(|_| self.open == Some(Which::Camera)) {
             wizard.see(newest(), ctx);
         }
     }
 
-    /// Present instruction to the person at the arm.
+    /// Current instruction to the person at the arm.
     pub fn prompt(&self) -> Prompt {
         self.open.and_then(|which| self.the(which)).map_or(Prompt::Rest, Wizard::prompt)
     }
@@ -339,14 +322,14 @@ impl Wizards {
         Some(Wanted { side, which, by_handle })
     }
 
-    /// Shows the result of saving in the open wizard, and what is to be done after it.
+    /// Shows the result of saving in the open wizard, and the step after it.
     pub fn tell_saved(&mut self, told: Result<String, String>, following: Option<GoOn>) {
         if let Some(wizard) = self.open.and_then(|which| self.the_mut(which)) {
             wizard.frame_mut().tell_saved(told, following);
         }
     }
 
-    /// Draws the open wizard; returns what is asked for.
+    /// Draws the open wizard; returns its request.
     pub fn ui(&mut self, ui: &mut Ui, binding: &Binding) -> Option<Asked> {
         let which = self.open?;
         ui.label(RichText::new(text::wizards::title(which.name())).font(theme::strong(22.0)));

@@ -1,4 +1,4 @@
-//! Pictures for guidance: the tool in the requested orientation, a sphere with the recorded directions, and maps of the
+//! Drawings for guidance: the tool in the requested orientation, a sphere with the recorded directions, and maps of the
 //! coverage.
 
 use egui::{
@@ -20,7 +20,7 @@ pub(super) fn on_paper(centre: Pos2, scale: f32, point: &Vector3<f64>) -> (Pos2,
     (pos2(centre.x + right as f32 * scale, centre.y - up as f32 * scale), depth)
 }
 
-/// The tool as it is held (solid) and as requested (outline), with the angle between them.
+/// The tool in its current orientation (solid) and in the requested one (outline), with the angle between them.
 pub(super) fn pose_picture(ui: &mut Ui, target: Option<&UnitQuaternion<f64>>, held: Option<&UnitQuaternion<f64>>) {
     let size = vec2(ui.available_width().min(320.0), 250.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());

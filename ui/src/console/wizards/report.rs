@@ -1,4 +1,4 @@
-//! Display of a session's report, or why there is none.
+//! Display of a session's report, or of the reason for a missing one.
 
 use egui::{RichText, Ui};
 use nima_core::calibration::Verdict;
@@ -8,7 +8,7 @@ use crate::{
     words::Words as _,
 };
 
-/// Result of a session, or why there is none; `None` with too few data.
+/// Result of a session, or the reason for a missing one; `None` with too few data.
 pub(super) type Report<R> = Option<Result<R, String>>;
 
 /// Text of a verdict and its reason.

@@ -1,8 +1,8 @@
 //! The tip-force wizard: check the rig, record, train, check the network, save.
 //!
-//! A recording is kept when going back, cancelling the training, or closing the wizard; a trained network is kept until
-//! there is a newer one. Training and judging run in the background and continue while the wizard is closed; they end
-//! with the window.
+//! A recording is kept when going back, cancelling the training, or closing the wizard; a trained network is kept until there
+//! is a newer one. Training and evaluation run in the background and continue while the wizard is closed; they end with the
+//! window.
 
 mod check_ui;
 mod job;
@@ -52,7 +52,7 @@ const CHECK_ROWS: usize = CHECK_WORK + 2000;
 /// Rows that a technician without a screen records: 80 s.
 const ENOUGH_ROWS: usize = 16_000;
 
-/// What a recording was made with: rows of different rigs must not be mixed.
+/// Origin of a recording: rows of different rigs must not be mixed.
 #[derive(Clone, Debug)]
 struct RecordedWith {
     sensor: String,
@@ -61,7 +61,7 @@ struct RecordedWith {
 }
 
 impl RecordedWith {
-    /// Whether it is the same rig, as far as known: a sensor that is lost for a moment may come back as the same one.
+    /// Whether it is the same rig, as far as known: a sensor that is lost briefly may come back as the same one.
     fn fits(&self, binding: &Binding) -> bool {
         if binding.sensor.is_empty() {
             return true;
@@ -119,7 +119,6 @@ impl Size {
     }
 }
 
-/// State of the wizard.
 #[derive(Debug, Default)]
 pub struct TipForceWizard {
     frame: Frame,

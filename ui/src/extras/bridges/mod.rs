@@ -23,7 +23,6 @@ use crate::{
 };
 use words::trouble_of;
 
-/// The extra.
 pub(super) struct Bridges;
 
 impl Extra for Bridges {
@@ -36,14 +35,14 @@ impl Extra for Bridges {
     }
 }
 
-/// Hands the newest picture of a reel to a bridge, as pixels.
+/// Passes the newest image of a queue to a bridge, as pixels.
 #[derive(Debug)]
 struct OfReel(Glimpse);
 
 impl Pictures for OfReel {
     fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)> {
         let Compressed { bytes, arrived, .. } = self.0.take(is_wanted).filter(|_| is_wanted)?;
-        // A damaged one is left out; the next one comes soon.
+        // A damaged image is skipped; the next one arrives soon.
         let jpeg::Picture { size_px, rgba } = jpeg::decode(&bytes).ok()?;
         let [width, height] = size_px.map(u16::try_from);
         let pixels = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
@@ -77,7 +76,10 @@ fn igtl_at(address: SocketAddr) -> anyhow::Result<Box<dyn Server>> {
     let at = server.address();
     tell(format_args!("nima: OpenIGTLink at {at}: connect 3D Slicer (OpenIGTLinkIF, client) or pyigtl to it"));
     if !at.ip().is_loopback() {
-        tell("nima: OpenIGTLink: whoever reaches this address can read poses, forces and pictures, without a password");
+        tell(
+            "nima: OpenIGTLink: anyone who can reach this address can read poses, forces and images, without a \
+         password",
+        );
     }
     Ok(Box::new(server))
 }
@@ -109,7 +111,7 @@ fn marks_by(library: &Path) -> anyhow::Result<Box<dyn Server>> {
     Ok(Box::new(marker))
 }
 
-/// The name of this computer, as far as the system tells it.
+/// Name of this computer, or a default if the system does not report one.
 fn machine() -> String {
     let by_kernel = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
     let name = by_kernel.or_else(|| std::env::var("COMPUTERNAME").ok()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `nima calibrate camera`: the lens of the endoscope's camera, from a folder of pictures or from the camera itself.
+//! `nima calibrate camera`: the lens of the endoscope's camera, from a folder of images or from the camera itself.
 
 use std::{
     fmt::Write as _,
@@ -18,26 +18,28 @@ use serde_json::json;
 use super::{lens::changes, words as camera};
 use crate::{command::output, leaving::Leave, telling::tell, words::Words as _};
 
-/// Most pictures of a folder.
+/// Maximum number of images in a folder.
 const PICTURES: usize = 500;
-/// Most bytes of one.
+/// Maximum size of an image, bytes.
 const BYTES: u64 = 16 << 20;
-/// A camera is watched until nothing new was taken for so long.
+/// A camera is watched until no new view was captured for this time.
 const PATIENCE: Duration = Duration::from_mins(2);
 const NAP: Duration = Duration::from_millis(20);
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder with JPEGs of the board, or the camera itself (http://HOST:PORT/PATH), which is watched while you move the board
+    /// Folder with JPEGs of the board, or the camera itself (http://HOST:PORT/PATH), which is watched while you move the
+    /// board
     #[arg(value_name = "FOLDER_OR_URL")]
     source: String,
     /// Inner corners along both sides, one number odd and the other even
     #[arg(long, value_name = "AxB", default_value = "9x6")]
     board: Corners,
-    /// Side of a square
+    /// Side length of a square
     #[arg(long, value_name = "MM", default_value_t = 10.0)]
     square_mm: f64,
-    /// Write the lens into this rig file, whose comments stay; the camera's place is taken away, because it belongs to the lens of before
+    /// Write the lens to this rig file and keep its comments; the camera position is removed, because it belongs to the
+    /// previous lens
     #[arg(long, value_name = "RIG.toml")]
     out: Option<PathBuf>,
     /// Print the report as one JSON object
@@ -45,7 +47,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Views, and what they are called.
+/// Views, and their names.
 struct Taken {
     size_px: [usize; 2],
     views: Vec<(String, Sight)>,
@@ -57,7 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(out) = &arguments.out {
         let rig = rig_file(out)?;
         if rig.value("endoscope.url").is_none() {
-            bail!("{} has no endoscope; add [endoscope] with its url first", out.display());
+            bail!("{} has no endoscope: add [endoscope] with its url first", out.display());
         }
         output::check(out, &[])?;
     }
@@ -83,21 +85,21 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let folder = out.parent().unwrap_or_else(|| Path::new("."));
     change_rig(&name, folder, &changes)?;
     tell(format_args!(
-        "{name}: the lens is written; calibrate the camera's place with `nima console --calibrate camera`"
+        "{name}: lens written; now calibrate the camera position with `nima console --calibrate camera`"
     ));
     Ok(())
 }
 
 fn rig_file(out: &Path) -> anyhow::Result<RigFile> {
     if !out.is_file() {
-        bail!("{} is no rig file; give --out the one that is to be changed", out.display());
+        bail!("{} is not a rig file: set --out to the rig file to change", out.display());
     }
     Ok(RigFile::of(&out.to_string_lossy())?)
 }
 
-/// The views in the JPEGs of a folder, in the order of their names.
+/// The views in the JPEGs of a folder, sorted by name.
 fn of_folder(folder: &Path, board: &Board) -> anyhow::Result<Taken> {
-    let about = || format!("cannot read the pictures in {}", folder.display());
+    let about = || format!("cannot read the images in {}", folder.display());
     let entries = std::fs::read_dir(folder).with_context(about)?;
     let mut paths: Vec<PathBuf> =
         entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>().with_context(about)?;
@@ -106,7 +108,7 @@ fn of_folder(folder: &Path, board: &Board) -> anyhow::Result<Taken> {
     });
     paths.sort();
     if paths.is_empty() || paths.len() > PICTURES {
-        bail!("{} JPEGs in {}; give a folder with 8 to {PICTURES}", paths.len(), folder.display());
+        bail!("{} JPEGs in {}: use a folder with 8 to {PICTURES}", paths.len(), folder.display());
     }
     let mut taken = Taken { size_px: [0, 0], views: Vec::new() };
     for path in paths {
@@ -115,27 +117,24 @@ fn of_folder(folder: &Path, board: &Board) -> anyhow::Result<Taken> {
         let picture = jpeg::decode(&bytes).with_context(|| path.display().to_string())?;
         let [width, height] = picture.size_px;
         if taken.size_px != [0, 0] && taken.size_px != picture.size_px {
-            bail!(
-                "{} is {width} x {height} px, the pictures before it are not; use pictures of one size",
-                path.display()
-            );
+            bail!("{} is {width} x {height} px, unlike the images before it: use images of one size", path.display());
         }
         taken.size_px = picture.size_px;
         let found = Grey::of(&picture).map(|grey| find(&grey, board));
         match found {
             Some(Ok(sight)) => taken.views.push((name, sight)),
             Some(Err(why)) => tell(format_args!("{name}: {}", camera::unseen(why))),
-            None => tell(format_args!("{name}: it is empty")),
+            None => tell(format_args!("{name}: the file is empty")),
         }
     }
     Ok(taken)
 }
 
-/// Watches the camera while the board is moved, and says what is wanted next.
+/// Watches the camera while the board is moved, and prints the next request.
 fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
     let leave = Leave::on_signals()?;
     let shown = address.to_string();
-    let feed = Feed::start(address, None, || {}).context("no thread for the picture")?;
+    let feed = Feed::start(address, None, || {}).context("no thread for decoding the image")?;
     let mut session: Option<Session> = None;
     let mut last = 0;
     let mut since = Instant::now();
@@ -148,17 +147,17 @@ fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
     };
     loop {
         if leave.is_asked() {
-            bail!("ended as asked; nothing is written");
+            bail!("ended on request; nothing was written");
         }
         if since.elapsed() > PATIENCE {
-            bail!("nothing new for {} s; {shown} shows no board that is held still", PATIENCE.as_secs());
+            bail!("no new view for {} s: {shown} shows no board that is held still", PATIENCE.as_secs());
         }
         let look = feed.look(Instant::now());
         if let Standing::Lost(trouble) = &look.standing {
             bail!("{trouble}: {}", trouble.cure());
         }
         if matches!(look.standing, Standing::Wrong(Wrong::Black)) {
-            say("the picture is black".to_owned());
+            say("the image is black".to_owned());
         }
         let Some((number, picture)) = look.picture.filter(|(number, _)| *number != last) else {
             thread::sleep(NAP);
@@ -166,7 +165,7 @@ fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
         };
         last = number;
         if session.as_ref().is_some_and(|session| session.size_px() != picture.size_px) {
-            bail!("the picture has another size than before; set the camera to one size");
+            bail!("the image size has changed: set the camera to one size");
         }
         let session = session.get_or_insert_with(|| Session::new(board, picture.size_px));
         let asked = session.asks();
@@ -183,7 +182,7 @@ fn of_camera(address: Address, board: Board) -> anyhow::Result<Taken> {
             _ => session.miss(),
         }
     }
-    let session = session.context("no picture came")?;
+    let session = session.context("no image received")?;
     let views = session.views().iter().enumerate().map(|(at, view)| (format!("view {}", at + 1), view.clone()));
     Ok(Taken { size_px: session.size_px(), views: views.collect() })
 }
@@ -194,10 +193,10 @@ const fn terms_words(terms: Terms) -> [(&'static str, bool); 3] {
 
 fn in_words(report: &Report, taken: &Taken) -> String {
     let mut text = format!("{}\n", report.verdict().words());
-    // Writing into a String cannot fail.
+    // Writing to a String cannot fail.
     writeln!(
         text,
-        "{} of {} views used; corners in {:.0} % of the picture",
+        "{} of {} views used; corners in {:.0} % of the image",
         report.used.len(),
         taken.views.len(),
         100.0 * report.coverage.share()
@@ -211,7 +210,7 @@ fn in_words(report: &Report, taken: &Taken) -> String {
     let sd = &found.deviations;
     writeln!(
         text,
-        "focal length {:.2} +- {:.2} px across, {:.2} px down   centre {:.2} +- {:.2}, {:.2} +- {:.2} px",
+        "focal length {:.2} +- {:.2} px horizontal, {:.2} px vertical   centre {:.2} +- {:.2}, {:.2} +- {:.2} px",
         lens.focal_px.x,
         sd.focal_px.x,
         lens.focal_px.y,
@@ -231,7 +230,7 @@ fn in_words(report: &Report, taken: &Taken) -> String {
         writeln!(
             text,
             "{name}: {}",
-            if is_found { "pays on held-out views" } else { "left out, does not pay on held-out views" }
+            if is_found { "improves held-out views" } else { "left out, does not improve held-out views" }
         )
         .ok();
     }

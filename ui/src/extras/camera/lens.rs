@@ -1,4 +1,4 @@
-//! What a calibration of the camera changes in a rig file.
+//! Changes of a camera calibration to a rig file.
 
 use nalgebra::Isometry3;
 use nima_core::{calibration::frames::RigChange, frames::to_roll_pitch_yaw_deg};
@@ -7,7 +7,7 @@ use nima_machine::config::RigFile;
 
 const CAMERA: &str = "endoscope.camera";
 
-/// Where a camera was found to be.
+/// Result for the camera pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FoundPlace {
     /// In the workspace, or in the frame of the endoscope's marker.
@@ -17,7 +17,8 @@ pub(super) struct FoundPlace {
     pub(super) checked_px: f64,
 }
 
-/// The changes that put this lens into a rig file. The camera's place was found with another lens and is taken away, unless a new one is given.
+/// Changes that write this lens to a rig file. The camera pose was found with another lens and is removed, unless a new one
+/// is given.
 pub(super) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) -> Vec<RigChange> {
     let [width, height] = lens.size_px;
     let Bend { k1, k2, p1, p2 } = lens.bend;
@@ -57,7 +58,7 @@ pub(super) fn changes(file: &RigFile, lens: &Lens, place: Option<FoundPlace>) ->
     values.into_iter().map(change).filter(|change| change.before != change.after).collect()
 }
 
-/// What undoes these changes. Where there was no camera before there is none again, without an empty table in its place.
+/// Changes that undo these. A camera that did not exist before is removed again, without an empty table.
 pub(super) fn undone(changes: &[RigChange]) -> Vec<RigChange> {
     let size = format!("{CAMERA}.size_px");
     if changes.iter().any(|change| change.key == size && change.before.is_none()) {
@@ -95,13 +96,13 @@ mod tests {
         let moved = again.world_from_camera.inverse() * pose;
         assert!(moved.translation.vector.norm() < 1e-5 && moved.rotation.angle() < 1e-5, "{moved}");
         assert!(std::fs::read_to_string(&path).unwrap().contains("# the tower"));
-        // On the endoscope's marker: where it was in the workspace is forgotten.
+        // On the endoscope's marker: the previous workspace pose is removed.
         let place = FoundPlace { on_marker: true, ..place };
         let all = changes(&RigFile::of(name).unwrap(), &lens, Some(place));
         let after = |key: &str| all.iter().find(|change| change.key.ends_with(key)).unwrap().after.clone();
         assert_eq!((after(".position_m"), after(".world_from_camera_deg")), (None, None));
         assert!(after(".n_from_camera_m").is_some() && after(".n_from_camera_deg").is_some());
-        // Another lens: where the camera is is not known any more.
+        // Another lens: the camera pose becomes unknown.
         let all = changes(&RigFile::of(name).unwrap(), &Lens::simple([1280, 720], 700.0, 0.0), None);
         change_rig(name, folder.path(), &all).unwrap();
         let camera = RigConfig::load(name).unwrap().endoscope.unwrap().camera.unwrap();
@@ -109,7 +110,7 @@ mod tests {
         change_rig(name, folder.path(), &undone(&all)).unwrap();
         let camera = RigConfig::load(name).unwrap().endoscope.unwrap().camera.unwrap();
         assert!((camera.focal_px - 750.25).abs() < 1e-3 && camera.position_m.is_some());
-        // Where there was no camera there is none again.
+        // A camera that did not exist before is removed again.
         let bare = folder.path().join("bare.toml");
         std::fs::write(&bare, text.split("[endoscope.camera]").next().unwrap()).unwrap();
         let bare = bare.to_str().unwrap();

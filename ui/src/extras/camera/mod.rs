@@ -1,4 +1,4 @@
-//! Calibration of the endoscope's camera, from pictures of a checkerboard.
+//! Calibration of the endoscope's camera, from images of a checkerboard.
 
 mod command;
 mod lens;
@@ -12,13 +12,12 @@ use super::{Extra, given};
 use crate::console::wizards::Wizard;
 use screen::CameraWizard;
 
-/// The extra.
 pub(super) struct Camera;
 
-// What it adds to `nima calibrate`. A doc comment would replace the help of that command.
+// Its addition to `nima calibrate`. A doc comment would replace the help of that command.
 #[derive(Debug, Subcommand)]
 enum Calibrate {
-    /// Find the lens of the endoscope's camera from pictures of a checkerboard
+    /// Find the lens of the endoscope's camera from images of a checkerboard
     Camera(command::Arguments),
 }
 

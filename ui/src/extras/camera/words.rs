@@ -4,30 +4,30 @@ use nima_camera::{Ask, Cause, Lack, LeftOut, Offer, PlaceError, Region, Unseen, 
 
 use crate::language::{told, word};
 
-/// What is missing for a good calibration, and what to do.
 pub(super) fn camera_cause(cause: &Cause) -> String {
     match cause {
         Cause::TooFew { used, needed } => {
             told!(
-                "{used} usable views of {needed}; show the board whole at other places",
+                "{used} usable views of {needed}; show the whole board at other positions",
                 "{used} brauchbare Ansichten von {needed}; ganze Tafel an anderen Stellen zeigen"
             )
         }
         Cause::Blurred { blurred, of } => {
             told!(
-                "{blurred} of {of} views are blurred; focus, and hold the board still",
+                "{blurred} of {of} views are blurred; focus the endoscope and hold the board still",
                 "{blurred} von {of} Ansichten sind unscharf; scharfstellen und Tafel ruhig halten"
             )
         }
         Cause::Repeated { repeated, of } => {
             told!(
-                "{repeated} of {of} views show the board at the same place; move it between the views",
+                "{repeated} of {of} views show the board at the same position; move it between views",
                 "{repeated} von {of} Ansichten zeigen die Tafel an derselben Stelle; zwischen den Ansichten bewegen"
             )
         }
         Cause::Parallel { most_deg } => {
             told!(
-                "the board was never tilted by more than {most_deg:.0} deg; tilt it by 25 deg and more, each way",
+                "the board was never tilted by more than {most_deg:.0} deg; tilt it by 25 deg or more in each \
+                 direction",
                 "die Tafel war nie mehr als {most_deg:.0} deg gekippt; in jede Richtung 25 deg und mehr kippen"
             )
         }
@@ -39,73 +39,71 @@ pub(super) fn camera_cause(cause: &Cause) -> String {
         }
         Cause::Coverage { share } => {
             told!(
-                "{:.0} % of the picture has shown corners; show the board near its edges",
+                "corners were seen in only {:.0} % of the image; show the board near the image edges",
                 "in {:.0} % des Bildes waren Ecken; Tafel nahe den Rändern zeigen",
                 100.0 * share
             )
         }
         Cause::NoFit => word(
-            "no lens explains the corners; check the number of corners, and that the board is flat",
+            "no lens explains the corners; check the number of corners, and check that the board is flat",
             "kein Objektiv erklärt die Ecken; Eckenzahl prüfen, und ob die Tafel eben ist",
         )
         .to_owned(),
         Cause::HeldOut { rms_px, most_px } => {
             told!(
-                "held-out corners are {rms_px:.2} px off, more than {most_px:.2} px; use a flat board, and focus",
+                "held-out corners are {rms_px:.2} px off (limit {most_px:.2} px); use a flat board and focus",
                 "Test-Ecken liegen {rms_px:.2} px daneben, mehr als {most_px:.2} px; ebene Tafel nehmen, scharfstellen"
             )
         }
         Cause::Uncertain { focal_percent, centre_px } => told!(
-            "the focal length is known to {focal_percent:.2} % and the centre to {centre_px:.1} px only; \
-             take more tilted views, near the edges of the picture",
+            "the focal length is uncertain by {focal_percent:.2} % and the centre by {centre_px:.1} px; capture \
+             more tilted views near the image edges",
             "Brennweite nur auf {focal_percent:.2} % und Mitte nur auf {centre_px:.1} px bekannt; mehr gekippte \
              Ansichten nahe den Bildrändern aufnehmen"
         ),
     }
 }
 
-/// Why a view was not used.
 pub(super) fn left_out(why: LeftOut) -> &'static str {
     match why {
         LeftOut::Blurred => word("blurred", "unscharf"),
-        LeftOut::Repeated => word("at the same place as another", "an derselben Stelle wie eine andere"),
-        LeftOut::Outlier => word("does not fit to the others", "passt nicht zu den anderen"),
+        LeftOut::Repeated => word("at the same position as another view", "an derselben Stelle wie eine andere"),
+        LeftOut::Outlier => word("does not fit the others", "passt nicht zu den anderen"),
     }
 }
 
-/// Why no board is found.
 pub(super) fn unseen(unseen: Unseen) -> String {
     match unseen {
-        Unseen::Nothing => word("no board is seen", "keine Tafel zu sehen").to_owned(),
+        Unseen::Nothing => word("no board detected", "keine Tafel zu sehen").to_owned(),
         Unseen::Part { seen, of } => told!(
-            "{seen} of {of} corners are seen; show the whole board",
+            "{seen} of {of} corners detected; show the whole board",
             "{seen} von {of} Ecken zu sehen; ganze Tafel zeigen"
         ),
         Unseen::Other([across, down]) => told!(
-            "a board of {across}x{down} inner corners is seen",
+            "a board with {across}x{down} inner corners was detected",
             "eine Tafel mit {across}x{down} inneren Ecken ist zu sehen"
         ),
     }
 }
 
-/// What became of the board in a picture.
 pub(super) fn offer(offer: Offer) -> &'static str {
     match offer {
-        Offer::Taken => word("taken", "aufgenommen"),
-        Offer::Moving => word("hold it still", "ruhig halten"),
+        Offer::Taken => word("captured", "aufgenommen"),
+        Offer::Moving => word("hold the board still", "ruhig halten"),
         Offer::Blurred => word(
-            "blurred; focus, or hold it farther away",
+            "blurred; focus, or hold the board farther away",
             "unscharf; scharfstellen oder weiter weg \
          halten",
         ),
-        Offer::TakenHere => word("taken here already", "hier schon aufgenommen"),
+        Offer::TakenHere => word("already captured here", "hier schon aufgenommen"),
     }
 }
 
-/// The view that is wanted next.
 pub(super) fn ask(ask: Ask) -> String {
     match ask {
-        Ask::Flat => word("Hold the board straight before the lens", "Tafel gerade vor das Objektiv halten").to_owned(),
+        Ask::Flat => {
+            word("Hold the board straight in front of the lens", "Tafel gerade vor das Objektiv halten").to_owned()
+        }
         Ask::Tilted(way) => {
             let side = match way {
                 Way::Left => word("left", "links"),
@@ -113,16 +111,16 @@ pub(super) fn ask(ask: Ask) -> String {
                 Way::Up => word("upper", "oben"),
                 Way::Down => word("lower", "unten"),
             };
-            told!("Tilt the board: its {side} side nearer to the lens", "Tafel kippen: {side} näher ans Objektiv")
+            told!("Tilt the board: {side} side nearer to the lens", "Tafel kippen: {side} näher ans Objektiv")
         }
         Ask::There(Region(place)) => {
-            told!("Move the board to the {} of the picture", "Tafel im Bild verschieben: {}", region(place))
+            told!("Move the board to the {} of the image", "Tafel im Bild verschieben: {}", region(place))
         }
         Ask::Other => {
-            word("Hold the board somewhere else, tilted otherwise", "Tafel woanders und anders gekippt halten")
+            word("Hold the board at another position with another tilt", "Tafel woanders und anders gekippt halten")
                 .to_owned()
         }
-        Ask::Complete => word("All views are taken", "Alle Ansichten aufgenommen").to_owned(),
+        Ask::Complete => word("All views captured", "Alle Ansichten aufgenommen").to_owned(),
     }
 }
 
@@ -140,7 +138,6 @@ fn region([column, row]: [usize; 2]) -> &'static str {
     }
 }
 
-/// Why the camera has no place.
 pub(super) fn place_error(error: PlaceError) -> String {
     match error {
         PlaceError::TooFew { touched, needed } => told!(
@@ -153,26 +150,25 @@ pub(super) fn place_error(error: PlaceError) -> String {
         )
         .to_owned(),
         PlaceError::NotSeen => word(
-            "the board cannot be placed before this lens; calibrate the lens again",
+            "the board position cannot be found with this lens; calibrate the lens again",
             "Tafellage vor diesem Objektiv nicht bestimmbar; Objektiv neu kalibrieren",
         )
         .to_owned(),
     }
 }
 
-/// What makes the camera's place useless.
 pub(super) fn place_lack(lack: &Lack) -> String {
     match lack {
         Lack::NotRigid { corner: [column, row], by_m } => told!(
-            "corner {} in row {} is {:.1} mm beside the board; touch it again, and do not move the board",
+            "corner {} in row {} is {:.1} mm off the board; touch it again, and do not move the board",
             "Ecke {} in Reihe {} liegt {:.1} mm neben der Tafel; neu berühren, Tafel nicht bewegen",
             column + 1,
             row + 1,
             by_m * 1e3
         ),
         Lack::HeldOut { rms_px, most_px } => told!(
-            "touched corners are {rms_px:.1} px from where the camera sees them, more than {most_px:.0} px; calibrate \
-             the tip first, and touch the corners exactly",
+            "touched corners are {rms_px:.1} px away from their image positions (limit {most_px:.0} px); \
+             calibrate the tip first, and touch the corners exactly",
             "berührte Ecken liegen {rms_px:.1} px neben ihrem Ort im Bild, mehr als {most_px:.0} px; erst Spitze \
              kalibrieren, Ecken genau berühren"
         ),

@@ -1,4 +1,4 @@
-//! The commands, in a program that has them.
+//! The commands, in a build that has them.
 
 use std::{
     net::{Ipv6Addr, SocketAddr},
@@ -27,11 +27,11 @@ use crate::{
     telling::tell,
 };
 
-/// The port of a rig that is shared.
+/// Default port of a shared rig.
 const PORT: u16 = 7447;
-/// How long rigs of the local network have to answer.
+/// Time for rigs on the local network to respond.
 const ANSWER: Duration = Duration::from_millis(1500);
-/// A rig that is silent or gone is looked for again after this time.
+/// A rig that is silent or missing is searched for again after this time.
 const AGAIN: Duration = Duration::from_secs(2);
 
 pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
@@ -39,7 +39,8 @@ pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
         DepartmentCommand::Create { name } => {
             let authority = Authority::create(&folder()?, name)?;
             output::line(&format!(
-                "department {} is created; issue a certificate to every machine with `nima department issue NAME --out FILE`",
+                "department {} created; issue a certificate to every machine with `nima department issue NAME \
+                 --out FILE`",
                 authority.department
             ))
         }
@@ -47,7 +48,8 @@ pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
             let role = if *watcher { Role::Watcher } else { Role::Rig };
             let identity = Authority::load(&folder()?)?.issue(name, role, out)?;
             output::line(&format!(
-                "certificate of {} {} is in {}: carry it there, use `nima department join` and delete the file",
+                "certificate of {} {} written to {}: copy it to that machine, run `nima department join` there, \
+                 and delete the file",
                 role.word(),
                 identity.name,
                 out.display()
@@ -57,7 +59,7 @@ pub(super) fn run(command: &DepartmentCommand) -> anyhow::Result<()> {
             let identity = Identity::join(&folder()?, file)?;
             let Identity { department, name, role, .. } = &identity;
             output::line(&format!(
-                "this machine is {} {name} of department {department}; delete {}",
+                "this machine is now {} {name} of department {department}; delete {}",
                 role.word(),
                 file.display()
             ))
@@ -74,7 +76,7 @@ fn folder() -> anyhow::Result<PathBuf> {
     Ok(folder.join("department"))
 }
 
-/// Who this machine is.
+/// Identity of this machine.
 pub(super) fn own_identity() -> anyhow::Result<Identity> {
     Ok(Identity::load(&folder()?)?)
 }
@@ -83,7 +85,7 @@ pub(super) fn own_identity() -> anyhow::Result<Identity> {
 struct Listed {
     name: String,
     address: String,
-    /// `None`: no loop runs there.
+    /// `None`: no loop is running there.
     rig: Option<String>,
     scene: Option<String>,
     running_since: Option<String>,
@@ -111,9 +113,9 @@ impl Listed {
         let Self { name, address, rig, scene, running_since, watchers, .. } = self;
         let runs = match (rig, scene, running_since) {
             (Some(rig), Some(scene), Some(since)) => format!("rig {rig}, scene {scene}, since {since}"),
-            _ => "no loop runs".to_owned(),
+            _ => "no loop is running".to_owned(),
         };
-        format!("{name} at {address}: {runs}; watchers: {watchers}")
+        format!("{name} at {address}: {runs}; viewers: {watchers}")
     }
 }
 
@@ -131,14 +133,13 @@ fn rigs(arguments: &RigsArguments) -> anyhow::Result<()> {
     }
     if listed.is_empty() {
         return output::line(
-            "no rig of this department is shared in the local network; one elsewhere is found by --at HOST",
+            "no rig of this department is shared on the local network; use --at HOST for a rig elsewhere",
         );
     }
     listed.iter().try_for_each(|rig| output::line(&rig.in_words()))
 }
 
 impl Which {
-    /// Where it is.
     fn address(&self, own: &Identity) -> anyhow::Result<String> {
         if let Some(address) = &self.at {
             return Ok(with_port(address));
@@ -150,11 +151,12 @@ impl Which {
         match found.as_slice() {
             [found] => Ok(found.address.clone()),
             [] => bail!(
-                "no such rig of this department is shared in the local network; `nima department rigs` lists them, --at HOST names one elsewhere"
+                "no such rig of this department is shared on the local network; `nima department rigs` lists the \
+                 shared rigs, --at HOST finds a rig elsewhere"
             ),
             several => {
                 let names: Vec<&str> = several.iter().map(|found| found.about.name.as_str()).collect();
-                bail!("several rigs are shared: {}; name one of them", names.join(", "))
+                bail!("several rigs are shared: {}: select one by name", names.join(", "))
             }
         }
     }
@@ -175,12 +177,12 @@ fn watch(arguments: &MonitorArguments) -> anyhow::Result<()> {
         let thread = thread::Builder::new().name("monitor".to_owned());
         let listen = move || listen(rig, &own, &address, &teller);
         if let Err(error) = thread.spawn(listen) {
-            tell(format_args!("nima: cannot start a thread: {error}; end other programs, then try again"));
+            tell(format_args!("nima: cannot start a thread: {error}; close other programs, then try again"));
         }
     })
 }
 
-/// Tells a window what a rig shows, until the window is closed. A rig that is gone is looked for again.
+/// Passes a rig's data to a window until the window is closed. A missing rig is searched for again.
 fn listen(rig: Rig, own: &Identity, address: &str, teller: &Teller) {
     let mut rig = Some(rig);
     loop {
@@ -201,14 +203,14 @@ fn listen(rig: Rig, own: &Identity, address: &str, teller: &Teller) {
     }
 }
 
-/// Until the window is closed.
+/// Returns when the window is closed.
 fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
     let (to, came) = crossbeam_channel::unbounded();
     let presence = rig.presence()?;
     let _watching = rig.watch(move |session, moments| drop(to.send((session, moments))))?;
     let mut shown = None;
     loop {
-        // What runs there, at first and whenever another session speaks or nothing comes.
+        // The running rig and scene, at the start and whenever the session changes or no data arrive.
         let about = rig.about()?;
         if shown != Some(about.session) {
             shown = Some(about.session);
@@ -233,7 +235,7 @@ fn listen_to(rig: &Rig, teller: &Teller) -> anyhow::Result<()> {
             }
         }
         if !presence.is_there() {
-            bail!("{} has ended, or cannot be reached", rig.name());
+            bail!("{} has ended or cannot be reached", rig.name());
         }
     }
 }
@@ -244,7 +246,7 @@ fn record(arguments: &RecordArguments) -> anyhow::Result<()> {
     let address = arguments.which.address(&own)?;
     let rig = Rig::open(&own, &address)?;
     let mut recording = Recording::start(&rig, &arguments.into)?;
-    tell(format_args!("nima: records {} into {}", rig.name(), arguments.into.display()));
+    tell(format_args!("nima: recording {} into {}", rig.name(), arguments.into.display()));
     let ends = arguments.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     let mut written = None;
     while !leave.is_asked() && ends.is_none_or(|ends| Instant::now() < ends) {
@@ -267,7 +269,7 @@ fn ended(file: &std::path::Path, messages: u64) -> anyhow::Result<()> {
     output::line(&format!("recorded {} messages into {}", messages, file.display()))
 }
 
-/// The address with the usual port, if it has none.
+/// Adds the default port to an address without one.
 fn with_port(address: &str) -> String {
     let has_port = address.parse::<SocketAddr>().is_ok()
         || address.rsplit_once(':').is_some_and(|(host, port)| !host.contains(':') && port.parse::<u16>().is_ok());

@@ -1,4 +1,4 @@
-//! Rigs of a department are watched and recorded at other machines.
+//! View and record the rigs of a department from other machines.
 
 mod engine;
 
@@ -15,7 +15,6 @@ use crate::{
     watching::{Server, Show, Shown},
 };
 
-/// The extra.
 pub(super) struct Department;
 
 impl Extra for Department {

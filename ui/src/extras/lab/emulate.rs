@@ -1,10 +1,10 @@
 //! `nima emulate`: emulators on the real interfaces, for drivers, third-party clients and demos without hardware.
 //!
-//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its
-//! standard input ends if that is a pipe or a terminal, so that it does not outlive the process that started it. Lines
-//! on standard input set faults: `fault NAME` (see `--help`), `fault none` removes it; with several devices `fault
-//! DEVICE NAME`, with a name that contains blanks in quotes or with dashes. `nima emulate rig` emulates a whole rig
-//! with one simulated world; `pedal BITS` presses its pedal's switches, `screen ...` shows its technician what to do.
+//! Prints one JSON line per endpoint (`{"device": ..., "endpoint": ...}`), then serves until Ctrl-C, or until its standard
+//! input ends if that is a pipe or a terminal, so that it does not outlive the process that started it. Lines on standard
+//! input set faults: `fault NAME` (see `--help`), `fault none` removes it; with several devices `fault DEVICE NAME`, where a
+//! name with blanks is written in quotes or with dashes. `nima emulate rig` emulates a whole rig with one simulated world;
+//! `pedal BITS` presses its pedal's switches, `screen ...` gives its technician an instruction.
 
 mod link;
 #[cfg(unix)]
@@ -28,19 +28,19 @@ pub(super) struct Arguments {
     /// Devices to emulate; `rig` for all devices of a rig, `link` for a bad network between two machines
     #[arg(required = true, value_name = "DEVICE")]
     devices: Vec<String>,
-    /// A setting of the emulated devices; devices that do not have it ignore it
+    /// Setting of the emulated devices; a device without the setting ignores it
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// With `rig`: the rig, by name or TOML file
+    /// With `rig`: the rig, built-in name or TOML file
     #[arg(long, default_value = "emulated")]
     rig: String,
-    /// With `rig`: the scene, by name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
+    /// With `rig`: the scene, built-in name or TOML file (default: `bimanual` for a rig with two arms, else `peg_transfer`)
     #[arg(long)]
     scene: Option<String>,
-    /// A fault that is in force from the beginning, as `fault NAME` on standard input sets it; an unknown name lists them
+    /// Fault that is active from the start, as `fault NAME` on standard input sets it; an unknown name lists all faults
     #[arg(long, value_name = "NAME")]
     fault: Option<String>,
-    /// End with standard input and without a word: whoever started this holds its other end
+    /// End silently when standard input closes: the parent process holds its other end
     #[arg(long, hide = true)]
     until_input_ends: bool,
 }
@@ -53,7 +53,9 @@ struct Endpoint<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.fault.is_some() && arguments.devices.iter().any(|name| name == "rig" || name == "link") {
-        bail!("--fault is for single devices; with a rig or a link write `fault DEVICE NAME` on standard input");
+        bail!(
+            "--fault applies only to single devices: for a rig or a link write `fault DEVICE NAME` to standard input"
+        );
     }
     #[cfg(unix)]
     if arguments.devices == ["rig"] {
@@ -84,8 +86,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     serve(&served, arguments.until_input_ends, |_| false)
 }
 
-/// Prints the endpoints and serves until the end is requested. Lines on standard input that are not about faults are
-/// passed to `other`, which returns whether it knows them.
+/// Prints the endpoints and serves until the end is requested. Other lines on standard input are passed to `other`, which
+/// returns whether it accepts them.
 fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&str) -> bool) -> anyhow::Result<()> {
     for (device, serving) in emulated {
         output::line(&serde_json::to_string(&Endpoint { device, endpoint: &serving.endpoint })?)?;
@@ -107,11 +109,11 @@ fn serve(emulated: &[(&str, &Serving)], until_input_ends: bool, other: impl Fn(&
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) if held => {
                 if !until_input_ends {
-                    tell("nima: standard input has ended, and with it the emulators");
+                    tell("nima: standard input has ended: the emulators end too");
                 }
                 return Ok(());
             }
-            // Standard input was a file that has been read completely, or there was none.
+            // Standard input was a file that has been read completely, or is missing.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(Duration::from_millis(50)),
         }
     }
@@ -133,7 +135,7 @@ fn input_is_held() -> bool {
     true
 }
 
-/// A device's name in normal form, whichever way its blanks were written.
+/// A device name in normal form, for blanks written in any way.
 fn plain(name: &str) -> String {
     name.trim_matches(['"', '\'']).replace('-', " ")
 }

@@ -23,15 +23,15 @@ use crate::command::{output, setup::side};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// CSV files with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes), or recorded sessions (.mcap); of several
-    /// a summary is printed too
+    /// CSV files with `t_s`, `x_m, y_m, z_m`, `fx_n, fy_n, fz_n` (one to three axes), or recorded sessions (.mcap); for
+    /// several, a summary is printed too
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Which arm of a session, right or left (needed if it has both)
+    /// Arm of a session, right or left (required if it has both)
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
-    /// Other column names, with an optional factor: `x=px_mm*0.001`, or of three axes at once: `xyz=px_mm,py_mm,pz_mm*0.001`,
-    /// `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` name the leader's own motion, of which the force is then made
+    /// Other column names, with an optional factor: `x=px_mm*0.001`, or three axes at once: `xyz=px_mm,py_mm,pz_mm*0.001`,
+    /// `fxyz=...`. `lx`, `ly`, `lz` or `lxyz` select the leader's own motion, from which the force is then computed
     #[arg(long, value_name = "NAME=COLUMN[*SCALE]")]
     map: Vec<String>,
     /// Rendering mode: anchored, matched, best, nima, dfr, linear, literal, or a baseline: `model_mediated`, waves, passivity,
@@ -50,10 +50,10 @@ pub(super) struct Arguments {
     /// Let the force on each axis depend on the motion of all axes (matched and best; slower)
     #[arg(long)]
     cross_talk: bool,
-    /// What literal and linear regress on: increments (what the motion changed over the window) or displacement (from the origin)
+    /// Regressors of literal and linear: increments (changes of the motion over the window) or displacement (from the origin)
     #[arg(long, value_name = "READING", default_value = "increments", value_parser = word::<Reading>)]
     reading: Reading,
-    /// By what error literal chooses its degree: window (in the window that it fitted) or next (over the 10 ms after it)
+    /// Error by which literal chooses its degree: window (in the window that it fitted) or next (over the 10 ms after it)
     #[arg(long, value_name = "CHOICE", default_value = "window", value_parser = word::<Choice>)]
     choice: Choice,
     /// Give literal and linear a free constant force
@@ -62,8 +62,8 @@ pub(super) struct Arguments {
     /// Ridge of literal and linear per row of the window, in columns divided by the workspace's scales; 0 for none
     #[arg(long, value_name = "R", default_value_t = 0.0, allow_negative_numbers = true)]
     ridge: f64,
-    /// Write one row per sample of the one recording to this CSV file
-    /// (replaces a file, whose mode stays; follows a link; refuses the input, a device or a pipe)
+    /// Write one row per sample of a single recording to this CSV file (replaces an existing file and keeps its permissions;
+    /// follows a link; rejects the input file, a device or a pipe)
     #[arg(long, value_name = "TRACE.csv")]
     out: Option<PathBuf>,
     /// Print the results as one JSON object
@@ -71,7 +71,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What is printed of several recordings.
+/// Output for several recordings.
 #[derive(Serialize)]
 struct Many<'a> {
     recordings: Vec<One<'a>>,
@@ -94,10 +94,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json { output::json(&figures) } else { output::line(&in_words(&figures)) }
 }
 
-/// Every recording with the same options, and a summary.
+/// Runs all recordings with the same options, and a summary.
 fn run_many(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.out.is_some() {
-        bail!("--out writes the samples of one recording: give one, or leave --out away");
+        bail!("--out writes the samples of a single recording: use one recording, or omit --out");
     }
     let one = |path: &PathBuf| Ok((path.display().to_string(), identify(arguments, path)?));
     let all: Vec<(String, Figures)> = arguments.recordings.iter().map(one).collect::<anyhow::Result<_>>()?;
@@ -133,7 +133,7 @@ fn options(arguments: &Arguments) -> Options {
     Options { mode, window_s, delay_s, max_degree, cross_talk, literal }
 }
 
-/// A word of a rig file.
+/// Parses a word of a rig file.
 fn word<T: DeserializeOwned>(text: &str) -> Result<T, Error> {
     T::deserialize(text.into_deserializer())
 }
@@ -150,13 +150,13 @@ fn header(recording: &Recording) -> String {
 }
 
 fn push_row(trace: &mut String, row: &Row, axes: usize) {
-    // Writing into a String cannot fail. Rust prints the fewest digits from which the same number can be read.
+    // Writing to a String cannot fail. Rust prints the fewest digits that read back as the same number.
     write!(trace, "{}", row.t_s).ok();
     for force in [Some(&row.measured), row.rendered.as_ref(), row.held.as_ref()] {
         for lane in 0..axes {
             match force {
                 Some(force) => write!(trace, ",{:e}", force[lane]).ok(),
-                // A blank, not a zero: nothing had come yet.
+                // A blank, not a zero: no value had arrived yet.
                 None => write!(trace, ",").ok(),
             };
         }
@@ -164,7 +164,7 @@ fn push_row(trace: &mut String, row: &Row, axes: usize) {
     writeln!(trace, ",{},{:e},{}", row.degree, row.condition, row.gate).ok();
 }
 
-/// The rendered force's error as a multiple of the held force's, if that has one.
+/// The rendered force's error as a multiple of the held force's error, if there is one.
 fn ratio_in_words(ratio: Option<f64>) -> String {
     ratio.map_or_else(|| "none: the held force is exact".to_owned(), |ratio| format!("{ratio:.3}"))
 }
@@ -173,7 +173,7 @@ fn ratio_of(figures: &Figures) -> Option<f64> {
     (figures.hold.mae > 0.0).then(|| figures.error.mae / figures.hold.mae)
 }
 
-/// A line for each recording, and one for all.
+/// One line per recording, and one for all.
 fn many_in_words(all: &[(String, Figures)], summary: &Summary) -> String {
     let row = |name: &str, compared: usize, error: f64, hold: f64, ratio: Option<f64>| {
         format!("{compared:>9}  {error:>9.5}  {hold:>9.5}  {:>7}  {name}\n", ratio_in_words(ratio))
@@ -189,8 +189,8 @@ fn many_in_words(all: &[(String, Figures)], summary: &Summary) -> String {
         let median = ratios.median;
         writeln!(text, "ratio: median {median:.3}, from {:.3} to {:.3} ({worst})", ratios.least, ratios.greatest).ok();
     }
-    writeln!(text, "rejected {rejected}; holes {holes}").ok();
-    text.push_str("(mean errors at the horizon in units of the recordings; ratio: rendered force to held force)");
+    writeln!(text, "rejected {rejected}; gaps {holes}").ok();
+    text.push_str("(mean prediction errors in units of the recordings; ratio: rendered force to held force)");
     text
 }
 
@@ -203,7 +203,7 @@ fn in_words(figures: &Figures) -> String {
     let holes = match figures.holes {
         0 => String::new(),
         count => format!(
-            "\nHOLES                  {count}, the longest {:.3} s: window and delay began anew after each",
+            "\nGAPS                   {count}, the longest {:.3} s: window and delay restarted after each",
             figures.longest_hole_s
         ),
     };

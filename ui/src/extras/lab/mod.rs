@@ -1,4 +1,4 @@
-//! The laboratory: emulated devices, studies that print figures, and what the window shows of them.
+//! The laboratory: emulated devices, studies that print results, and their parts of the window.
 
 mod emulate;
 mod identify;
@@ -16,7 +16,6 @@ use crate::{
     truth::Comparison,
 };
 
-/// The extra.
 pub(super) struct Lab;
 
 #[derive(Debug, Subcommand)]

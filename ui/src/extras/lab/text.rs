@@ -1,4 +1,4 @@
-//! The panel that measures computing time against accuracy, and the strip below the gain slider.
+//! The Trade-off panel (computing time versus accuracy), and the strip below the gain slider.
 
 use nima_study::stability_map::Verdict;
 
@@ -13,34 +13,33 @@ pub(super) const NOT_MEASURED: Text = Text::of(
     "Noch nicht gemessen. Dauert einige Sekunden; die Regelung läuft weiter.",
 );
 pub(super) const MEASURE_HOVER: Text = Text::of(
-    "Runs every combination of mode, degree and window on six seconds of this scene, in a background \
-    thread without real-time priority. Other work on this computer makes the times longer and their p99 \
-    uncertain.",
+    "Runs every combination of mode, degree and window on six seconds of this scene, in a background thread \
+     without real-time priority. Other load on this computer lengthens the times and makes their p99 uncertain.",
     "Rechnet jede Kombination aus Modus, Grad und Fenster auf sechs Sekunden dieser Szene, in einem Hintergrund-Thread \
      ohne Echtzeitpriorität. Andere Last auf diesem Rechner verlängert die Zeiten und macht ihr p99 unsicher.",
 );
 pub(super) const MEASURE: Text = Text::of("Measure on this machine…", "Auf diesem Rechner messen…");
 pub(super) const CANCEL: Text = Text::of("Cancel", "Abbrechen");
 pub(super) const CANCEL_HOVER: Text = Text::of(
-    "Stops measuring at once; earlier results are kept",
+    "Stops the measurement at once; earlier results are kept",
     "Bricht die Messung sofort ab; frühere Ergebnisse \
      bleiben",
 );
 pub(super) const FRONT: Text = Text::of(
-    "Best choices, cheapest first:",
+    "Best choices, fastest first:",
     "Beste Kombinationen, schnellste \
  zuerst:",
 );
 pub(super) const FRONT_HOVER: Text = Text::of(
-    "The Pareto front: every other choice takes more time or has a larger error. Only NIMA and \
-    literal have a degree, and these two and linear a window.",
+    "The Pareto front: every other choice takes more time or has a larger error. Only NIMA and Literal have a \
+     degree; only these two and Linear have a window.",
     "Die Pareto-Front: jede andere Kombination braucht mehr Zeit oder hat einen größeren Fehler. Nur NIMA und Wörtlich \
      haben einen Grad, diese beiden und Linear ein Fenster.",
 );
 pub(super) const APPLY: Text = Text::of("Apply", "Anwenden");
 pub(super) const APPLY_BY_RESTART: Text = Text::of(
-    "Degree or window differ from those in use: the loop restarts and is then idle, without force. Press \
-    Engage when you are ready.",
+    "Degree or window differs from the current one: the loop restarts and is then idle, without force. Press \
+     Engage when you are ready.",
     "Grad oder Fenster weichen von den aktiven ab: die Regelung startet neu und ist dann im Leerlauf, ohne Kraft. \
      Koppeln, wenn alles bereit ist.",
 );
@@ -65,37 +64,32 @@ pub(super) const STABLE_GAIN_UNMEASURED: Text = Text::of(
      gemessen",
 );
 pub(super) const STABLE_GAIN_HOVER: Text = Text::of(
-    "From simulations of a gripping hand that is pushed aside and must come to rest again, for the mode \
-    and delay in use and the stiffness of the present contact (N/m; between contacts, of the last one). \
-    Force is kept at standstill and the energy gate is off, which is harder than the default settings. \
-    Solid: stable. Thin: at the limit. Hatched: the hand shakes.",
+    "From simulations of a gripping hand that is pushed aside and must come to rest again, for the current mode \
+     and delay and the stiffness of the current contact (N/m; between contacts, of the last one). Force is kept \
+     at standstill and the energy gate is off, which is stricter than the default settings. Solid: stable. Thin: \
+     at the limit. Hatched: the hand shakes.",
     "Aus Simulationen einer greifenden Hand, die ausgelenkt wird und wieder zur Ruhe kommen muss, für aktuellen Modus, \
      aktuelle Verzögerung und die Steifigkeit des jetzigen Kontakts (N/m; sonst des letzten). Kraft im Stillstand wird \
      gehalten, die Energiesperre ist aus: strenger als die Standardeinstellungen. Voll: stabil. Dünn: an der Grenze. \
      Schraffiert: die Hand zittert.",
 );
 
-/// The background thread could not be started.
 pub(super) fn not_started(error: &impl std::fmt::Display) -> String {
     told!("The measurement could not be started: {error}", "Messung nicht gestartet: {error}")
 }
 
-/// Progress of the measurement.
 pub(super) fn measured(percent: f32) -> String {
     told!("Trade-off measured: {percent:.0} %", "Abwägung gemessen: {percent:.0} %")
 }
 
-/// The loop now uses this choice.
 pub(super) fn applied(choice: &str) -> String {
     told!("Applied: {choice}", "Angewendet: {choice}")
 }
 
-/// The loop could not be restarted with the choice.
 pub(super) fn not_applied(reason: &str) -> String {
     told!("Not applied: {reason}", "Nicht angewendet: {reason}")
 }
 
-/// All figures of a point.
 pub(super) fn point(name: &str, [median_us, p99_us]: [&str; 2], delay_ms: f64, [error_n, ratio]: [&str; 2]) -> String {
     told!(
         "{name}\none tick: median {median_us} µs, p99 {p99_us} µs\nmean error at {delay_ms:.0} ms: {error_n} N, \
@@ -105,20 +99,17 @@ pub(super) fn point(name: &str, [median_us, p99_us]: [&str; 2], delay_ms: f64, [
     )
 }
 
-/// Title of the error axis.
 pub(super) fn error_axis(unit: &str) -> String {
     told!("Mean error ({unit})", "Mittlerer Fehler ({unit})")
 }
 
-/// The plot in one sentence.
 pub(super) fn plot(points: usize) -> String {
     told!(
-        "Trade-off plot: {points} points, time of a tick against prediction error",
+        "Trade-off plot: {points} points, time per tick versus prediction error",
         "Abwägungsdiagramm: {points} Punkte, Zeit eines Takts gegen Vorhersagefehler"
     )
 }
 
-/// Verdict of the stability map for this gain.
 pub(super) fn stable_up_to(verdict: Verdict, greatest: f64, stiffness_n_m: f64) -> String {
     let verdict = match verdict {
         Verdict::Stable => word("stable", "stabil"),

@@ -1,7 +1,7 @@
-//! Compares the loop's force at the tip with the true one.
+//! Compares the loop's tip force with the true one.
 //!
-//! The two processes share the time of day: it says which tick belongs to a true force. A tick is never seen before it was made, so
-//! the smallest difference between the time of day and the loop's time is how the two clocks stand.
+//! The two processes share the time of day, which assigns ticks to true forces. A tick never arrives before its time, so the
+//! smallest difference between the time of day and the loop's time is the offset of the two clocks.
 
 use std::{collections::VecDeque, fmt::Write as _};
 
@@ -15,15 +15,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::truth::Comparison;
 
-/// Ticks of a side that are kept for the truth about them: two seconds at 1 kHz.
+/// Stored ticks of a side that wait for their true force: two seconds at 1 kHz.
 const KEPT: usize = 2000;
 /// A true force is compared with a tick at most this far from it, s.
 const NEAR_S: f64 = 0.002;
 
-/// The true force at a tip.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Known {
-    /// The side.
     pub(super) truth: Side,
     /// Time of day, s since 1970.
     pub(super) at_s: f64,
@@ -31,7 +29,7 @@ pub(super) struct Known {
     pub(super) tip_n: [f64; 3],
 }
 
-/// Compares ticks with what is known about them.
+/// Compares ticks with their true forces.
 #[derive(Debug)]
 pub(super) struct TipComparison {
     errors: TipErrors,
@@ -53,7 +51,7 @@ impl Default for TipComparison {
 }
 
 impl TipComparison {
-    /// Adds what is known, and compares what can be compared by now.
+    /// Adds true forces, and compares all ticks that are now complete.
     fn know(&mut self, known: impl Iterator<Item = Known>) {
         self.waiting.extend(known);
         while let Some(known) = self.waiting.front().copied() {
@@ -96,14 +94,13 @@ impl Comparison for TipComparison {
     }
 }
 
-/// The figures as a table.
 fn in_words(figures: &[TipError]) -> String {
     if figures.is_empty() {
         return String::new();
     }
     let mut text =
-        "\nforce at the tip against the true one, N per axis (x, y, z of the workspace), while engaged:".to_owned();
-    // Writing into a String cannot fail.
+        "\ntip force compared with the true force, N per axis (x, y, z of the workspace), while engaged:".to_owned();
+    // Writing to a String cannot fail.
     for TipError { side, method, mae_n: [x, y, z], free, without_network, doubt, .. } in figures {
         write!(text, "\n  {:5}  {method:12}  mean error {x:.3} {y:.3} {z:.3}", side.word()).ok();
         if let Some(free) = free {
@@ -160,7 +157,7 @@ mod tests {
         let compared = |late_s: f64| {
             let mut comparison = TipComparison::default();
             for (index, tick) in ticks.iter().enumerate() {
-                // Ticks are seen up to 5 ms after they were made, and the truth comes before the tick that it is about.
+                // Ticks arrive up to 5 ms after their time, and the true force before its tick.
                 let known =
                     Known { truth: Side::Right, at_s: BEGAN_S + tick.t_s + late_s, tip_n: tick.measured_n.into() };
                 comparison.know(std::iter::once(known));

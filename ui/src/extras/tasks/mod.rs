@@ -1,4 +1,4 @@
-//! Training tasks: what a run or a recorded session scored.
+//! Training tasks: the score of a run or of a recorded session.
 
 mod score;
 pub(super) mod scoring;
@@ -11,12 +11,11 @@ use super::{Extra, given};
 use crate::scoring::Scorer;
 use scoring::Scoring;
 
-/// The extra.
 pub(super) struct Tasks;
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Score recorded sessions: time, path, speed, smoothness, force of each hand; also as a table of trials
+    /// Score recorded sessions: time, path, speed, smoothness and force of each hand; also as a table of trials
     Score(score::Arguments),
 }
 

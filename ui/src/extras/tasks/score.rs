@@ -1,4 +1,4 @@
-//! `nima score`: how the hands moved and pressed in recorded sessions, as figures and as a table of trials.
+//! `nima score`: motion and force of the hands in recorded sessions, as measures and as a table of trials.
 
 use std::{
     collections::BTreeMap,
@@ -20,7 +20,7 @@ use crate::{
     recording::SCENE,
 };
 
-/// The task of a session in which nobody told of objects.
+/// The task of a session without recorded objects.
 const FREE: &str = "name = 'Free'\nkind = 'free'\ntime_limit_s = 1200.0";
 
 #[derive(Debug, Args)]
@@ -30,13 +30,14 @@ pub(super) struct Arguments {
     sessions: Vec<PathBuf>,
     #[command(flatten)]
     stretch: Stretch,
-    /// Task file (TOML): name, kind, time limit, thresholds (default: the task of the recorded scene, if what happened in it is recorded)
+    /// Task file (TOML): name, kind, time limit, thresholds (default: the task of the recorded scene, if its events are
+    /// recorded)
     #[arg(long, value_name = "FILE")]
     task: Option<PathBuf>,
-    /// Whose trials these are, for the table
+    /// Participant of these trials, for the table
     #[arg(long, value_name = "NAME", requires = "out")]
     participant: Option<String>,
-    /// The condition, for the table (default: mode and delay of the session)
+    /// Condition, for the table (default: mode and delay of the session)
     #[arg(long, value_name = "NAME", requires = "out")]
     condition: Option<String>,
     /// Write a table of trials (CSV) for `nima study trials`
@@ -47,12 +48,10 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// One session.
 #[derive(Serialize)]
 struct Scored {
     session: String,
     condition: String,
-    /// Name of the task.
     task: String,
     #[serde(flatten)]
     score: Score,
@@ -61,7 +60,7 @@ struct Scored {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Arguments { sessions, stretch, task, participant, condition, out, json } = arguments;
     if stretch.is_asked() && sessions.len() > 1 {
-        bail!("--from and --to are for one session, and there are {}", sessions.len());
+        bail!("--from and --to apply to a single session, not to {}", sessions.len());
     }
     if let Some(out) = out {
         output::check(out, &sessions.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
@@ -87,13 +86,13 @@ fn task_of(path: &Path) -> anyhow::Result<TaskFile> {
     TaskFile::from_toml(&text).with_context(|| path.display().to_string())
 }
 
-/// The task of the scene in which a session was recorded. Without events there is nothing to count in it: then it is free motion.
+/// The task of the session's scene. Without recorded events there is nothing to count: then it is free motion.
 fn recorded_task(session: &Path, reader: &Reader) -> anyhow::Result<TaskFile> {
     let scene = reader.attachments().iter().find(|one| one.name == SCENE).filter(|_| objects::are_told(reader));
     let Some(scene) = scene else { return Ok(TaskFile::from_toml(FREE)?) };
     let text = String::from_utf8_lossy(&reader.attachment(scene)?).into_owned();
     let scene = Scene::parse(Path::new(SCENE), &text).with_context(|| {
-        format!("session {}: its scene cannot be read; give the task with --task FILE", session.display())
+        format!("session {}: its scene cannot be read; set the task with --task FILE", session.display())
     })?;
     Ok(scene.task.map_or_else(|| TaskFile::from_toml(FREE), |task| TaskFile::of(&task))?)
 }
@@ -111,7 +110,7 @@ fn scored(
     let ns = |t_s: f64| if t_s.is_finite() { begin_ns.saturating_add((t_s * 1e9).round() as u64) } else { u64::MAX };
     let score = scored::score(&reader, session, &(ns(times_s.start)..ns(times_s.end)), &task)?;
     let score =
-        score.with_context(|| format!("session {}: no arm was engaged, so there is no trial", session.display()))?;
+        score.with_context(|| format!("session {}: no arm was engaged, so it contains no trial", session.display()))?;
     let tables: BTreeMap<_, _> = reader.metadata()?.into_iter().collect();
     let word = |key: &str| tables.get("session").and_then(|table| table.get(key)).cloned().unwrap_or_default();
     let delay_ms =
@@ -145,7 +144,7 @@ fn four_digits(value: f64) -> String {
     format!("{value:.*}", places as usize)
 }
 
-/// A row per session, a column per measure that any of them has.
+/// One row per session, one column per available measure.
 fn table(scored: &[Scored], participant: &str) -> String {
     let has =
         |place: &usize| scored.iter().any(|one| one.score.measures().nth(*place).is_some_and(|m| m.value.is_some()));

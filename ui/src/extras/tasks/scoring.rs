@@ -14,12 +14,11 @@ pub(crate) struct Scoring {
 }
 
 impl Scoring {
-    /// For this task; `watched` tells what happens to the objects.
+    /// `watched` reports the events of the objects.
     pub(crate) fn new(task: &TaskFile, watched: Option<Watched>) -> Self {
         Self { trial: LiveTrial::new(task), watched }
     }
 
-    /// Takes the next tick of a side.
     pub(crate) fn tick(&mut self, tick: &Tick) {
         self.hear();
         self.trial.tick(tick);
@@ -35,10 +34,10 @@ impl Scoring {
         }
     }
 
-    /// The score, if anything was engaged.
+    /// `None` if no arm was engaged.
     pub(crate) fn end(mut self) -> Option<Score> {
         self.hear();
-        // Without objects nobody tells when the task is done.
+        // Without objects, the end of the task is not reported.
         self.trial.end(self.watched.is_none())
     }
 }

@@ -16,7 +16,7 @@ use crate::{
 pub(super) struct Arguments {
     #[command(flatten)]
     setup: Setup,
-    /// Address of this machine at which to listen; without one only consoles on this machine reach it
+    /// Address of this machine to listen at (default: only consoles on this machine)
     #[arg(long, value_name = "ADDRESS[:PORT]")]
     listen: Option<String>,
     /// Seconds to run (default: until Ctrl-C)
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: Arguments) -> anyhow::Result<()> {
     let at = network::listening(arguments.listen.as_deref())?;
     let Arguments { setup, seconds, scheduling, record, watching, json, .. } = arguments;
-    // What is rendered, and how, is the console's.
+    // The console determines the rendering.
     let run = run::Arguments { setup, seconds, scheduling, record, watching, json, ..run::Arguments::default() };
     run::run_with(&run, |rig, scene| {
         let line = network::listen(rig, scene, at)?;

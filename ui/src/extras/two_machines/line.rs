@@ -1,4 +1,4 @@
-//! The line to the other machine as the loop uses it, and what is told of it.
+//! The link to the other machine as the loop uses it, and its reports.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 use egui::Ui;
@@ -20,13 +20,13 @@ use super::{
 };
 use crate::link::{Line, LineDoor};
 
-/// What is told is renewed so often, s.
+/// Interval of the reports, s.
 const TOLD_EVERY_S: f64 = 0.1;
 
-/// Reports and wishes that wait.
+/// Maximum number of waiting reports and requests.
 const WAITING: usize = 4;
 
-/// One end of the line. The loop's thread drives it.
+/// One end of the link. The loop's thread drives it.
 pub(super) struct NetworkLine {
     endpoint: Endpoint,
     here: Ends,
@@ -36,40 +36,39 @@ pub(super) struct NetworkLine {
     next_s: f64,
 }
 
-/// The ends of the channels that are for another thread.
+/// The channel ends for another thread.
 #[derive(Clone, Debug)]
 struct Channels {
     reports: Receiver<LineReport>,
     wishes: Sender<LineWish>,
 }
 
-/// What other threads hold of a line.
+/// Handle of a link for other threads.
 #[derive(Debug)]
 pub(super) struct NetworkDoor {
     channels: Channels,
     newest: Option<LineReport>,
-    /// The state that was told last, in words.
+    /// Text of the last reported state.
     told: Option<String>,
 }
 
-/// What an operator wants of the follower at the other end.
+/// An operator's request about the follower at the other end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineWish {
-    /// Control, which another console has.
+    /// Request control, which another console has.
     Control,
-    /// Control no longer.
+    /// Withdraw the request.
     Nothing,
-    /// To give control to the console that asks for it, or to keep it.
+    /// Give control to the requesting console, or keep it.
     Answer { consents: bool },
 }
 
 impl NetworkDoor {
-    /// The newest report, if there was one.
     pub(super) const fn newest(&self) -> Option<&LineReport> {
         self.newest.as_ref()
     }
 
-    /// Hands a wish to the line. With more than a few waiting it is lost, and the next report shows that nothing has changed.
+    /// Sends a request to the link. If too many wait it is lost, and the next report shows that nothing has changed.
     pub(super) fn wish(&self, wish: LineWish) {
         self.channels.wishes.try_send(wish).ok();
     }
@@ -114,11 +113,11 @@ impl LineDoor for NetworkDoor {
     }
 }
 
-/// What is told of a line.
+/// Report of a link.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineReport {
     pub(super) state: LinkState,
-    /// Who holds the follower.
+    /// Owner of control over the follower.
     pub(super) control: Control,
     pub(super) figures: Figures,
     pub(super) dropped: Dropped,
@@ -132,12 +131,11 @@ impl NetworkLine {
         Self { endpoint, here, told, wishes, door: Channels { reports, wishes: wish }, next_s: 0.0 }
     }
 
-    /// What other threads hold of it.
     pub(super) fn network_door(&self) -> NetworkDoor {
         NetworkDoor { channels: self.door.clone(), newest: None, told: None }
     }
 
-    /// One wish in a tick, if one waits.
+    /// Handles one waiting request per tick.
     fn obey(&mut self) {
         match self.wishes.try_recv() {
             Ok(LineWish::Control) => self.endpoint.ask_for_control(),
@@ -159,7 +157,7 @@ impl NetworkLine {
             figures: endpoint.figures(),
             dropped: endpoint.dropped(),
         };
-        // Nobody may be reading: the newest four wait.
+        // A receiver may be missing: the newest four wait.
         told.try_send(report).ok();
     }
 }
@@ -194,19 +192,19 @@ impl Wire for NetworkLine {
     }
 }
 
-/// The figures of a line, as they are printed.
+/// Link statistics for JSON output.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct LinkFigures {
     /// Whether messages pass.
     open: bool,
-    /// Least round trip, s, and how wrong the other clock may be known by it, s.
+    /// Minimum round trip, s, and resulting uncertainty of the other clock, s.
     round_trip_s: Option<f64>,
     clock_bound_s: Option<f64>,
     clock_offset_s: Option<f64>,
     one_way_mean_s: Option<f64>,
     one_way_p999_s: Option<f64>,
     playout_s: Option<f64>,
-    /// Shares of datagrams.
+    /// Fractions of datagrams.
     loss: f64,
     loss_there: f64,
     copies: usize,

@@ -13,7 +13,6 @@ use clap::{ArgMatches, Subcommand};
 use super::{Extra, given};
 use crate::link::Way;
 
-/// The extra.
 pub(super) struct TwoMachines;
 
 #[derive(Debug, Subcommand)]

@@ -1,4 +1,4 @@
-//! Opens the line between two machines, at either end.
+//! Opens the link between two machines, at either end.
 
 use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs as _};
 
@@ -18,7 +18,7 @@ use nima_simulation::scene::Scene;
 use super::line::NetworkLine;
 use crate::link::{Line, Way};
 
-/// The way to a machine where `nima follower` runs.
+/// The connection to a machine where `nima follower` runs.
 pub(super) struct Network;
 
 impl Way for Network {
@@ -41,7 +41,7 @@ impl Way for Network {
     }
 }
 
-/// Opens the follower's end at this address; changes the rig to what is here.
+/// Opens the follower's end at this address; reduces the rig to the parts at this machine.
 pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyhow::Result<Box<dyn Line>> {
     without_objects(scene)?;
     let (keys, mut consoles) = own_keys()?;
@@ -55,11 +55,11 @@ pub(super) fn listen(rig: &mut RigConfig, scene: &Scene, at: SocketAddr) -> anyh
     open(arms(rig, scene), Role::Follower { at: Some(at), consoles }, keys, Ends::Follower)
 }
 
-/// The tools of a follower are those of its own simulated hand, which would do the task by itself.
+/// The tools of a follower belong to its own simulated hand, which would do the task by itself.
 fn without_objects(scene: &Scene) -> anyhow::Result<()> {
     anyhow::ensure!(
         !scene.is_played(),
-        "scene \"{}\" has a training task, which is on one machine only: choose another scene",
+        "scene \"{}\" has a training task, which works only on one machine: choose another scene",
         scene.name
     );
     Ok(())
@@ -80,7 +80,7 @@ fn open(arms: usize, role: Role, keys: Keys, ends: Ends) -> anyhow::Result<Box<d
     Ok(Box::new(NetworkLine::new(endpoint, ends)))
 }
 
-/// The folder of this machine's key and of the machines that it is paired with.
+/// Folder of this machine's key and of the paired machines.
 pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
     let store = nima_recording::store::Store::of_user()?;
     let folder = store.folder().parent().context("no folder for your files was found; set NIMA_DATA_DIR")?;
@@ -89,13 +89,13 @@ pub(super) fn folder() -> anyhow::Result<std::path::PathBuf> {
     Ok(folder)
 }
 
-/// This machine's key, and the machines that it is paired with.
+/// This machine's key, and the paired machines.
 pub(super) fn own_keys() -> anyhow::Result<(Keys, Peers)> {
     let folder = folder()?;
     Ok((Keys::open(&folder)?, Peers::open(&folder)?))
 }
 
-/// The name by which a paired machine is found again: as it was addressed, without the port.
+/// The name under which a paired machine is stored: its address without the port.
 pub(super) fn name_of(host: &str) -> &str {
     if host.parse::<std::net::Ipv6Addr>().is_ok() {
         return host;
@@ -103,18 +103,19 @@ pub(super) fn name_of(host: &str) -> &str {
     host.rsplit_once(':').map_or(host, |(name, _)| name)
 }
 
-/// The address of a host, with the usual port unless it names one.
+/// The address of a host, with the default port if it has none.
 pub(crate) fn address(host: &str) -> anyhow::Result<SocketAddr> {
     let with_port = host.to_socket_addrs();
     let mut found = with_port.or_else(|_| (host, PORT).to_socket_addrs()).with_context(|| {
         format!(
-            "cannot find the machine \"{host}\": give its name or address, and a port after a colon if it is not {PORT}"
+            "cannot find the machine \"{host}\": enter its name or address, and the port after a colon if it is \
+             not {PORT}"
         )
     })?;
     found.next().with_context(|| format!("the machine \"{host}\" has no address"))
 }
 
-/// Where a follower listens: this address, with the usual port unless it names one; loopback if there is none.
+/// Listening address of a follower, with the default port if it has none; loopback without an address.
 pub(super) fn listening(at: Option<&str>) -> anyhow::Result<SocketAddr> {
     at.map_or_else(|| Ok((Ipv4Addr::LOCALHOST, PORT).into()), address)
 }

@@ -1,4 +1,4 @@
-//! `nima pair`: two machines learn each other's key, and two people see by a code that nobody stands between them.
+//! `nima pair`: two machines exchange keys, and two people compare a code to rule out an interceptor.
 
 use std::{
     io::BufRead as _,
@@ -19,16 +19,16 @@ use crate::{
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The follower's machine, from the console's
+    /// Host of the follower's machine, given at the console's machine
     #[arg(value_name = "HOST[:PORT]", required_unless_present = "offer", conflicts_with = "offer")]
     host: Option<String>,
     /// Wait for a console, at the follower's machine
     #[arg(long)]
     offer: bool,
-    /// With --offer: address of this machine at which to listen (default: consoles on this machine only)
+    /// With --offer: address of this machine to listen at (default: only consoles on this machine)
     #[arg(long, value_name = "ADDRESS[:PORT]", requires = "offer")]
     listen: Option<String>,
-    /// With --offer: the name of the console in the list of this machine
+    /// With --offer: name of the console in the list of this machine
     #[arg(long, value_name = "NAME", requires = "offer", default_value = "console")]
     name: String,
     /// Seconds to wait for the other machine

@@ -1,4 +1,4 @@
-//! The line to the machine with the arm: whether messages pass, who holds the follower, and what the network takes.
+//! The Link panel: whether messages pass, which console controls the follower, and the network statistics.
 
 use egui::{Button, RichText, Ui, vec2};
 use nima_network::endpoint::Control;
@@ -14,7 +14,7 @@ use crate::console::{
     widgets::{figure, small},
 };
 
-/// What a line does. It sends wishes to the line; who holds a follower is not the loop's matter.
+/// State of a link. It sends requests to the link; control of a follower does not concern the loop.
 pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
     let Some(report) = door.newest() else {
         ui.label(text::NOTHING_YET.get());
@@ -32,7 +32,7 @@ pub(super) fn link_ui(ui: &mut Ui, door: &NetworkDoor, drives: bool) {
     }
 }
 
-/// Who holds the follower, and the buttons with which it changes hands.
+/// The console in control of the follower, and the buttons that transfer control.
 fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor) {
     let words = match report.control {
         Control::None => return,
@@ -52,7 +52,7 @@ fn control_ui(ui: &mut Ui, report: &LineReport, drives: bool, door: &NetworkDoor
     };
     match report.control {
         Control::HoldsAsked => {
-            // The arm must not change hands while it is driven: it would stop in a fault.
+            // Control must not change while the arm is driven: the arm would stop in a fault.
             if button(ui, !drives, text::GIVE.get(), text::GIVE_HOVER.get()) {
                 door.wish(LineWish::Answer { consents: true });
             }
@@ -96,7 +96,7 @@ mod tests {
     struct Three {
         _folder: tempfile::TempDir,
         ends: [NetworkLine; 3],
-        /// How many of them run: who comes first holds the follower.
+        /// Number of running ones: the first controls the follower.
         running: usize,
         begun: Instant,
     }
@@ -127,7 +127,7 @@ mod tests {
             Self { _folder: folder, ends, running: 2, begun: Instant::now() }
         }
 
-        /// Drives those that run until this console's report is as wanted, and shows it in the panel.
+        /// Drives the running ones until this console's report matches, and shows it in the panel.
         fn until(&mut self, window: &mut Harness<'_, NetworkDoor>, control: Control) {
             while window.state().newest().is_none_or(|report| report.control != control) {
                 assert!(self.begun.elapsed() < Duration::from_mins(1), "never {control:?}: {:?}", window.state());

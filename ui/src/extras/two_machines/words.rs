@@ -1,4 +1,4 @@
-//! Texts: what the line to the other machine does, and what the operator can do.
+//! State of the link to the other machine, and remedies.
 
 use nima_network::{
     control::{Cause, Refusal},
@@ -9,7 +9,7 @@ use nima_network::{
 use super::line::LineReport;
 use crate::language::{told, word};
 
-/// The state, a clause without a full stop.
+/// State, a clause without a full stop.
 pub(super) fn state_in_words(state: LinkState) -> String {
     match link_trouble(state) {
         None => word("connected to the other machine", "mit der Gegenstelle verbunden").to_owned(),
@@ -17,15 +17,15 @@ pub(super) fn state_in_words(state: LinkState) -> String {
     }
 }
 
-/// Why nothing passes, and what to do, clauses without a full stop; `None` if all is well.
+/// Cause and remedy of a broken link, clauses without a full stop; `None` if the link works.
 pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     let cause = match state {
         LinkState::Open => return None,
         LinkState::Waiting => {
             return Some([
-                word("the other machine has not been heard of yet", "von der Gegenstelle kam noch nichts").to_owned(),
+                word("no data from the other machine yet", "noch keine Daten von der Gegenstelle").to_owned(),
                 word(
-                    "see whether it runs, and whether a firewall stops UDP",
+                    "check that it is running, and that no firewall blocks UDP",
                     "prüfen, ob sie läuft und ob eine Firewall UDP sperrt",
                 )
                 .to_owned(),
@@ -36,37 +36,37 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     if let Cause::ClockJumped { by_s } = cause {
         return Some([
             told!(
-                "a clock of the two machines jumped by {:.0} ms",
+                "the clock of one of the two machines jumped by {:.0} ms",
                 "eine Uhr der beiden Rechner sprang um {:.0} ms",
                 by_s * 1e3
             ),
-            word("find out what sets it", "klären, was sie stellt").to_owned(),
+            word("find out what sets that clock", "klären, was sie stellt").to_owned(),
         ]);
     }
     if let Cause::Refused(Refusal::Version(version)) = cause {
         return Some([
             told!(
-                "the other machine speaks version {version} of the protocol",
+                "the other machine uses version {version} of the protocol",
                 "die Gegenstelle spricht Version {version} des Protokolls"
             ),
-            word("install the same program on both", "auf beiden dasselbe Programm installieren").to_owned(),
+            word("install the same program version on both", "auf beiden dasselbe Programm installieren").to_owned(),
         ]);
     }
     let [cause, cure] = match cause {
         Cause::PeerClosed => [
             word("the program at the other machine was closed", "das Programm der Gegenstelle wurde geschlossen"),
-            word("start it again there", "dort neu starten"),
+            word("restart it there", "dort neu starten"),
         ],
         Cause::HeldByAnother => [
-            word("another console holds the follower", "eine andere Konsole steuert den Folgearm"),
+            word("another console controls the follower", "eine andere Konsole steuert den Folgearm"),
             word(
-                "ask for control in the panel Link, or wait until it is free",
+                "request control in the Link panel, or wait until the follower is free",
                 "Steuerung im Panel Verbindung anfragen oder warten, bis er frei ist",
             ),
         ],
         Cause::NotAsked => [
-            word("nobody holds the follower", "niemand steuert den Folgearm"),
-            word("ask for control in the panel Link", "Steuerung im Panel Verbindung anfragen"),
+            word("no console controls the follower", "keine Konsole steuert den Folgearm"),
+            word("request control in the Link panel", "Steuerung im Panel Verbindung anfragen"),
         ],
         Cause::Refused(Refusal::Full) => [
             word(
@@ -77,16 +77,16 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
         ],
         Cause::Refused(_) => [
             word(
-                "the other machine refuses the key of this one",
+                "the other machine rejects the key of this machine",
                 "die Gegenstelle lehnt den Schlüssel dieses Rechners \
              ab",
             ),
             word("pair the two machines with `nima pair`", "beide Rechner mit `nima pair` paaren"),
         ],
         Cause::Silent { .. } | Cause::ClockJumped { .. } => [
-            word("nothing comes from the other machine", "von der Gegenstelle kommt nichts"),
+            word("no response from the other machine", "keine Antwort von der Gegenstelle"),
             word(
-                "check cable and network, and whether that machine runs",
+                "check cable and network, and check that the other machine is running",
                 "Kabel und Netzwerk prüfen, und ob der Rechner läuft",
             ),
         ],
@@ -94,7 +94,7 @@ pub(super) fn link_trouble(state: LinkState) -> Option<[String; 2]> {
     Some([cause.to_owned(), cure.to_owned()])
 }
 
-/// A figure of a line.
+/// One measurement of the link.
 #[derive(Clone)]
 pub(super) struct LinkRow {
     pub(super) name: &'static str,
@@ -103,7 +103,6 @@ pub(super) struct LinkRow {
     pub(super) meaning: &'static str,
 }
 
-/// The figures of a line, one to a row.
 pub(super) fn link_rows(report: &LineReport) -> Vec<LinkRow> {
     let figures = &report.figures;
     let state = match report.state {
@@ -126,24 +125,21 @@ fn ms(seconds: f64) -> String {
     format!("{:.1} ms", seconds * 1e3)
 }
 
-/// What a message takes.
 fn times(figures: &Figures) -> Vec<LinkRow> {
     let mut rows = Vec::new();
     let mut row = |name, value, meaning| rows.push(LinkRow { name, value, meaning });
     if let Some(clock) = &figures.clock {
         row(
             word("Round trip", "Umlaufzeit"),
-            told!("{} at least", "mindestens {}", ms(clock.round_trip_s)),
-            word(
-                "The shortest time there and back that was measured lately (ms).",
-                "Die kürzeste zuletzt gemessene Zeit hin und zurück (ms).",
-            ),
+            told!("minimum {}", "mindestens {}", ms(clock.round_trip_s)),
+            word("The shortest recent round trip (ms).", "Die kürzeste zuletzt gemessene Zeit hin und zurück (ms)."),
         );
         row(
             word("Clock offset", "Uhrenversatz"),
             format!("{} ± {}", ms(clock.offset_s), ms(clock.bound_s)),
             word(
-                "The other machine's clock minus this one's. It is wrong by half the shortest round trip at most.",
+                "The other machine's clock minus this machine's clock. The error is at most half the shortest \
+                 round trip.",
                 "Uhr der Gegenstelle minus Uhr dieses Rechners. Höchstens um die halbe kürzeste Umlaufzeit falsch.",
             ),
         );
@@ -161,17 +157,17 @@ fn times(figures: &Figures) -> Vec<LinkRow> {
             word("Jitter", "Jitter"),
             ms(delays.p999_s - delays.mean_s),
             word(
-                "How much longer than the mean the slowest of a thousand messages takes (ms).",
+                "How much longer than the mean the slowest of 1000 messages takes (ms).",
                 "Wie viel länger als das Mittel die langsamste von tausend Nachrichten braucht (ms).",
             ),
         );
     }
     if let Some(playout_s) = figures.playout_s {
         row(
-            word("Play-out delay", "Ausgabeverzögerung"),
+            word("Playout delay", "Ausgabeverzögerung"),
             ms(playout_s),
             word(
-                "Every message is held until it is this old (ms), so that jitter is not felt in the hand.",
+                "Every message is held back until it is this old (ms), so that the hand does not feel jitter.",
                 "Jede Nachricht wird bis zu diesem Alter (ms) gehalten, damit die Hand keinen Jitter spürt.",
             ),
         );
@@ -179,7 +175,6 @@ fn times(figures: &Figures) -> Vec<LinkRow> {
     rows
 }
 
-/// What is lost, and what it takes of the network.
 fn amounts(report: &LineReport) -> Vec<LinkRow> {
     let figures = &report.figures;
     let counts = &report.figures.counts;
@@ -188,18 +183,19 @@ fn amounts(report: &LineReport) -> Vec<LinkRow> {
     row(
         word("Loss", "Verlust"),
         told!(
-            "{:.1} % to here, {:.1} % to there",
+            "{:.1} % inbound, {:.1} % outbound",
             "{:.1} % hierher, {:.1} % dorthin",
             figures.loss * 1e2,
             figures.loss_there * 1e2
         ),
-        word("Share of the datagrams that never arrived.", "Anteil der Datagramme, die nie ankamen."),
+        word("Percentage of datagrams that never arrived.", "Anteil der Datagramme, die nie ankamen."),
     );
     row(
         word("Copies", "Kopien"),
         figures.copies.used.to_string(),
         word(
-            "How often each message is sent. The worse the loss, the more copies, as far as the rate allows.",
+            "How often each message is sent. More copies are sent when the loss is higher, as far as the rate \
+             allows.",
             "Wie oft jede Nachricht gesendet wird. Je mehr Verlust, desto mehr Kopien, soweit die Rate es erlaubt.",
         ),
     );
@@ -212,7 +208,7 @@ fn amounts(report: &LineReport) -> Vec<LinkRow> {
             figures.received.rate_bit_s / 1e6
         ),
         word(
-            "What the link takes of the network, with all headers.",
+            "Network rate of the link, headers included.",
             "Was die Verbindung vom Netzwerk belegt, mit allen Headern.",
         ),
     );
@@ -220,7 +216,7 @@ fn amounts(report: &LineReport) -> Vec<LinkRow> {
         word("Messages", "Nachrichten"),
         told!("{}, {} late, {} lost", "{}, {} verspätet, {} verloren", counts.delivered, counts.late, counts.lost),
         word(
-            "Messages that arrived, and of these late for their play-out; lost are those of which no copy arrived.",
+            "Messages that arrived, messages too late for playout, and lost messages (no copy arrived).",
             "Angekommene Nachrichten, davon für die Ausgabe verspätete; verloren sind solche, von denen keine Kopie \
              ankam.",
         ),

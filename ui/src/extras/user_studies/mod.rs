@@ -11,7 +11,6 @@ use clap::{ArgMatches, Subcommand};
 use super::{Extra, given};
 use crate::console::page::Page;
 
-/// The extra.
 pub(super) struct UserStudies;
 
 #[derive(Debug, Subcommand)]
@@ -19,7 +18,7 @@ enum Command {
     /// Run a user study: orders, blind conditions, trials, questionnaires
     #[command(subcommand, arg_required_else_help = false)]
     UserStudy(commands::UserStudyCommand),
-    /// Analyse a user study: one page with tables and pictures, the tables as CSV, and a script for R
+    /// Analyse a user study: one page with tables and plots, the tables as CSV, and a script for R
     StudyReport(commands::report::Arguments),
 }
 

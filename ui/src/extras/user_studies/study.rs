@@ -1,4 +1,5 @@
-//! Trials of a user study in the loop: from the sealed condition to a rig, from a simulated person to a scene, from a run to a score.
+//! Trials of a user study in the loop: from the sealed condition to a rig, from a simulated person to a scene, from a run to
+//! a score.
 
 use std::path::{Path, PathBuf};
 
@@ -19,40 +20,39 @@ use nima_user_study::{
 
 use crate::{extras::tasks::scoring::Scoring, leaving::Leave, objects::OfSimulation, recording, words::Remedy as _};
 
-/// Names of the ready studies.
+/// Names of the templates.
 pub(super) const READY: [&str; 2] = ["paper", "short"];
-/// The ready study files.
 const STUDIES: [(&str, &str); 2] = [
     ("paper", include_str!("../../../../config/studies/paper.toml")),
     ("short", include_str!("../../../../config/studies/short.toml")),
 ];
-/// Why a trial was broken off that somebody gave up, for the journal.
+/// Journal entry for a trial aborted by the operator.
 pub(super) const GIVEN_UP: &str = "given up by the operator";
-/// The same for one that somebody stopped, whose loop ended, or whose window was closed.
+/// Journal entry for a trial that was stopped, whose loop ended, or whose window was closed.
 pub(super) const STOPPED: &str = "stopped by the operator";
 pub(super) const LOOP_ENDED: &str = "the loop ended";
 pub(super) const CLOSED: &str = "the console was closed";
 pub(super) const NOT_STARTED: &str = "the loop did not start";
-/// The loop engages within this time, s.
+/// Timeout of the engagement, s.
 const ENGAGES_S: f64 = 5.0;
 
-/// How a trial went.
+/// Result of a trial.
 pub(super) struct Ran {
     pub(super) trial: TrialId,
-    /// Nothing if it was broken off.
+    /// `None` if it was aborted.
     pub(super) ending: Option<Ending>,
     pub(super) completion_time_s: Option<f64>,
-    /// Why it was broken off.
+    /// Reason for the abort.
     pub(super) why: Option<String>,
 }
 
-/// Reads the ready study file of this name, or a file.
+/// Reads the template of this name, or a file.
 pub(super) fn study_file(name: &str) -> anyhow::Result<StudyFile> {
     let (path, text) = text("study", name, &STUDIES)?;
     StudyFile::from_toml(&text).with_context(|| path.display().to_string())
 }
 
-/// Everything that is wrong with a study: its file, its scene, and whether its rig allows every condition.
+/// All errors of a study: its file, its scene, and conditions that its rig does not permit.
 pub(super) fn mistakes(file: &StudyFile) -> Vec<String> {
     let mut wrong = file.check().err().map_or_else(Vec::new, |Mistakes(wrong)| wrong);
     wrong.extend(scene_of(file).err().map(|error| format!("{error:#}")));
@@ -67,7 +67,6 @@ pub(super) fn mistakes(file: &StudyFile) -> Vec<String> {
     wrong
 }
 
-/// Makes the folder of a study.
 pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
     let scene = scene_of(file)?;
     let rig = RigConfig::load(&file.rig)?;
@@ -78,7 +77,7 @@ pub(super) fn create(folder: &Path, file: &StudyFile) -> anyhow::Result<Study> {
     Ok(Study::create(folder, file, &scene, &utc_now())?)
 }
 
-/// The scene of a study: with its task, and with so many rings as it asks for.
+/// The scene of a study, with its task and its number of rings.
 pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
     let mut scene = Scene::load(&file.scene)?;
     if let Some(task) = &file.task {
@@ -103,7 +102,7 @@ pub(super) fn scene_of(file: &StudyFile) -> anyhow::Result<Scene> {
 /// The same rig under a condition.
 pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConfig, ConfigError> {
     rig.delay_s = condition.delay_ms.unwrap_or(0.0) * 1e-3;
-    // Without force the cheapest mode computes what the gain then takes away.
+    // Without force the cheapest mode computes the force that the gain then removes.
     rig.mode = condition.mode.unwrap_or(Mode::Dfr);
     rig.gates.gain = if condition.no_force { 0.0 } else { condition.gain.unwrap_or(1.0) };
     rig.identification.own_motion = condition.own_motion.unwrap_or(rig.identification.own_motion);
@@ -114,14 +113,14 @@ pub(super) fn under(mut rig: RigConfig, condition: &Condition) -> Result<RigConf
 /// The hand of the scene, with other random sequences in each trial.
 pub(super) fn plain_hand(study: &Study, participant: &str) -> anyhow::Result<Hand> {
     let scene = scene_in(study)?;
-    // Trials and interruptions, so that a repetition is not the same.
+    // Trials and interruptions, so that a repetition differs.
     let of = study.state().progress(participant).map_or(0, |one| u64::from(one.interruptions));
     let seed = scene.seed.wrapping_add(u64::from(made(study, participant).0) + 1000 * of);
     let nima_simulation::scene::Hand { pace, tremor_m, intended_n, .. } = scene.hand;
     Ok(Hand { pace, tremor_m, intended_n, seed })
 }
 
-/// Trials that a participant has made, practice included; all, and since the last break.
+/// Numbers of trials of a participant, practice included: in total, and since the last break.
 pub(super) fn made(study: &Study, participant: &str) -> (u32, u32) {
     let progress = study.state().progress(participant);
     progress.map_or((0, 0), |one| ((one.practice_s.len() + one.trials.len()) as u32, one.since_break()))
@@ -131,12 +130,11 @@ fn scene_in(study: &Study) -> anyhow::Result<Scene> {
     Ok(Scene::parse(&scene_file(study), study.scene())?)
 }
 
-/// The scene file of a study.
 pub(super) fn scene_file(study: &Study) -> PathBuf {
     study.folder().join("scene.toml")
 }
 
-/// The scene for a trial on this rig, with this hand and its random sequences, and its task.
+/// The scene for a trial on this rig, with this hand, its random sequences, and its task.
 pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::Result<(Scene, TaskFile)> {
     let mut scene = scene_in(study)?;
     scene.hand.pace = hand.pace;
@@ -147,7 +145,7 @@ pub(super) fn scene_for(study: &Study, rig: &RigConfig, hand: &Hand) -> anyhow::
     Ok((scene.mounted_at(rig)?, task))
 }
 
-/// Writes down how a trial ended; `why` it was broken off, if it was.
+/// Records the end of a trial, with the reason of an abort in `why`.
 pub(super) fn close(
     study: &mut Study,
     running: Running,
@@ -171,13 +169,13 @@ pub(super) fn close(
     }
 }
 
-/// Why a trial was broken off by a fault, for the journal.
+/// Journal entry for a trial aborted by a fault.
 pub(super) fn ended_by(fault: Fault) -> String {
     format!("the loop ended in a fault: {}", fault.cause())
 }
 
-/// Runs the trial that comes next, in the simulated rig on the virtual clock, by a simulated hand. `what` it was, it tells; under which
-/// condition it does not.
+/// Runs the next trial on the simulated rig with a simulated hand, on the virtual clock. Returns its number, but not its
+/// condition.
 pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, leave: &Leave) -> anyhow::Result<Ran> {
     let rig = RigConfig::load(&study.plan().rig)?;
     if !rig.has_simulated_hand() {
@@ -186,12 +184,13 @@ pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
     let (scene, task) = scene_for(study, &rig, hand)?;
     let mut plan = Plan { rig, scene, calibrations: Default::default(), engage: true };
     if !plan.may_engage() {
-        bail!("scene \"{}\" cannot be engaged: the force at its tip is not known", plan.scene.name);
+        bail!("scene \"{}\" cannot be engaged: the force at its tip is unknown", plan.scene.name);
     }
     let running = study.begin_trial(participant, true, &utc_now())?;
-    // The reason would tell the condition. A rig that was changed since `new` is the only one.
-    plan.rig = under(plan.rig, running.condition())
-        .map_err(|_| anyhow!("the rig of the study does not allow this condition any more: was its file changed?"))?;
+    // The reason would reveal the condition. The only possible one is a rig changed since `new`.
+    plan.rig = under(plan.rig, running.condition()).map_err(|_| {
+        anyhow!("the rig of the study no longer permits this condition: check whether its file was changed")
+    })?;
     let recorded =
         running.session().map(|file| recording::begin(Destination::file(file), &plan, Some(VirtualClock::PERFECT)));
     let (tap, recorder) = recorded.transpose()?.unzip();
@@ -222,22 +221,22 @@ pub(super) fn run_virtual(study: &mut Study, participant: &str, hand: &Hand, lea
 }
 
 impl Ran {
-    /// In words, without the condition; and without the result, unless it is shown.
+    /// Text without the condition, and without the result unless it is to be shown.
     pub(super) fn in_words(&self, shows_result: bool) -> String {
         let Self { trial, ending, completion_time_s, why } = self;
         let what = if trial.phase == Phase::Practice { "practice trial" } else { "trial" };
         let how = match (ending, completion_time_s, why) {
-            (Some(_), ..) if !shows_result => "over (this time without its result)".to_owned(),
+            (Some(_), ..) if !shows_result => "ended (result hidden)".to_owned(),
             (_, Some(time_s), _) => format!("completed in {time_s:.1} s"),
-            (Some(Ending::OutOfTime), ..) => "the time is over".to_owned(),
-            (.., Some(why)) => format!("broken off ({why})"),
+            (Some(Ending::OutOfTime), ..) => "the time limit is reached".to_owned(),
+            (.., Some(why)) => format!("aborted ({why})"),
             _ => "ended".to_owned(),
         };
         format!("{what} {}: {how}", trial.number)
     }
 }
 
-/// What comes next, for a sentence.
+/// Text of the next step within a sentence.
 pub(super) fn next_in_words(step: &Step) -> String {
     format!("next: {step}")
 }

@@ -1,4 +1,4 @@
-//! What acts on the machine: stop, release, engage, alarms, the instrument that is driven.
+//! Commands for the machine: stop, release, engage, alarms, mouse control.
 
 use eframe::App as _;
 use egui::{Key, accesskit::Role as Kind};
@@ -22,12 +22,12 @@ fn stop_release_engage_and_the_traces() {
         &mut console,
         Action::Pause,
         |console| {
-            if shows(console, "Go on") {
-                press(console, "Go on");
+            if shows(console, "Resume") {
+                press(console, "Resume");
             }
         },
         |console| press(console, "Pause"),
-        |console| format!("{}", shows(console, "Go on")),
+        |console| format!("{}", shows(console, "Resume")),
     ));
     let traces = |console: &mut Console| format!("{:?}", console.state().traces_s());
     let zoom = |console: &mut Console| console.state_mut().show_traces(30.0);
@@ -38,13 +38,13 @@ fn stop_release_engage_and_the_traces() {
     let greyed = rows(&mut console);
     assert!(greyed.contains(&("Engage".to_owned(), false)), "not before the stop is released: {greyed:?}");
     for (action, state) in [(Action::Release, LoopState::Idle), (Action::Engage, LoopState::Engaged)] {
-        // The button waits a moment after every change of state, and so does the command.
+        // Button and command wait a moment after every change of state.
         console.run_steps(30);
         open(&mut console);
         write_into(&mut console, FIELD, &entry(action).title);
         console.key_press(Key::Enter);
         console.run_steps(30);
-        assert!(is_open(&console) && shows(&console, "Press Enter once more"), "{action:?}");
+        assert!(is_open(&console) && shows(&console, "Press Enter or click again"), "{action:?}");
         assert_ne!(console.state().tick().unwrap().state, state, "one Enter does nothing");
         close(&mut console);
         choose(&mut console, action);

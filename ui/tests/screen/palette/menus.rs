@@ -1,4 +1,4 @@
-//! What the View menu and the top bar do.
+//! Commands of the View menu and the top bar.
 
 use egui::{Key, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
@@ -16,7 +16,7 @@ use nima_console::{
 use super::{alike, begin, by_key, choose, entry, expect, rows};
 use crate::bench::{Console, pick, press, shows};
 
-/// The settings at the beginning, with this changed.
+/// The initial settings with this change.
 fn set(change: impl Fn(&mut Settings)) -> impl Fn(&mut Console) {
     move |console| {
         let settings = console.state_mut().settings_mut();
@@ -59,7 +59,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         let reset = set(|settings| settings.light = !light);
         done.push(alike(&mut console, Action::Light(light), reset, of_menu(Kind::Button, name), settings));
     }
-    // The way back is tried where German labels are known.
+    // The way back is tested with German labels elsewhere.
     done.push(Action::Language(Language::English));
     let german = Action::Language(Language::German);
     let reset = set(|settings| settings.language = Language::English);
@@ -81,7 +81,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
         done.push(alike(&mut console, Action::Panel(panel), reset, other, seen));
     }
     let reset = set(|settings| settings.layout = Layout { closed: vec![Panel::Link], ..Layout::default() });
-    done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset the layout"), settings));
+    done.push(alike(&mut console, Action::ResetLayout, reset, of_menu(Kind::Button, "Reset layout"), settings));
     for action in [Action::Sound, Action::ForcesOfNow, Action::RecordsPicture] {
         done.push(alike(&mut console, action, set(|_| {}), of_menu(Kind::CheckBox, &entry(action).title), settings));
     }
@@ -100,7 +100,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
             console.run_steps(2);
             press(console, SHOW.get());
         };
-        // It is switched twice to be as before.
+        // Switched twice to restore the initial state.
         let extras = |console: &mut Console| format!("{:?}", console.state().extras());
         let before = console.state().extras();
         let reset = move |console: &mut Console| {
@@ -114,7 +114,7 @@ fn what_the_view_menu_and_the_keys_of_the_screen_do() {
     expect(&done, "the View menu");
 }
 
-/// What is on the screen, by something that stands only there.
+/// The open page, identified by something unique to it.
 fn pages(console: &mut Console) -> String {
     let marks = ["1. Choose a rig", "Back to the view", "New study", "The last 50 alarms", "Terms"];
     let marks = marks.iter().chain(&["Three views of one loop"]);
@@ -134,7 +134,7 @@ fn what_the_top_bar_opens_and_what_is_undone() {
             }
         }
         if shows(console, "Three views of one loop") {
-            pick(console, "Skip the tour");
+            pick(console, "Skip tour");
         }
         // The key of a view closes the pages.
         console.key_press(Key::F2);

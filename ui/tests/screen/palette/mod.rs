@@ -1,5 +1,5 @@
-//! The palette: every command of the table is reached by its name and does what its key, its menu or its button does; who sits before the
-//! screen finds what can be reached from there, and nothing leads to force by one Enter.
+//! The palette: every command of the table is found by its name and has the same effect as its key, menu or button; each
+//! person finds the commands available to them, and a single Enter never leads to force.
 
 mod machine;
 mod menus;
@@ -56,7 +56,7 @@ pub(super) fn titles(console: &mut Console) -> Vec<String> {
     rows(console).into_iter().map(|(title, _)| title).collect()
 }
 
-/// Types the name of the command and Enter, twice where it is asked once more.
+/// Types the name of the command and Enter, twice if it needs confirmation.
 pub(super) fn choose(console: &mut Console, action: Action) {
     open(console);
     let title = &entry(action).title;
@@ -81,7 +81,7 @@ pub(super) fn by_key(console: &mut Console, action: Action) {
     console.run_steps(4);
 }
 
-/// From the same state, the palette leads where the key or the button leads.
+/// From the same state, the palette has the same effect as the key or the button.
 pub(super) fn alike(
     console: &mut Console,
     action: Action,
@@ -114,7 +114,7 @@ pub(super) fn begin(folder: &Path, scene: &str) -> Console {
     console
 }
 
-/// The commands that are tried there are all done.
+/// Checks that all commands assigned to this test were tried.
 pub(super) fn expect(done: &[Action], there: &str) {
     let all = table().iter().filter(|entry| tried_in(entry.action) == there);
     assert!(all.clone().next().is_some(), "nothing is tried in {there}");
@@ -123,7 +123,7 @@ pub(super) fn expect(done: &[Action], there: &str) {
     assert!(missing.is_empty(), "not tried: {missing:?}");
 }
 
-/// Where a command is tried. One that is added to the table is added here, or this does not compile.
+/// The test of a command. A command added to the table must be added here, or this does not compile.
 const fn tried_in(action: Action) -> &'static str {
     match action {
         Action::View(_)
@@ -157,7 +157,7 @@ const fn tried_in(action: Action) -> &'static str {
         Action::LeavePast | Action::Play | Action::Step(_) => "the past",
         // It opens the palette, in every test.
         Action::Palette => "all",
-        // Needs a session that is being recorded: beside the code that keeps one.
+        // Needs a session that is being recorded: tested next to the code that keeps one.
         Action::Keep => "the console itself",
     }
 }

@@ -1,4 +1,4 @@
-//! What belongs to a part of the window: the endoscope's picture, a recorded session.
+//! Commands of a part of the window: the endoscope image, a recorded session.
 
 use egui::Key;
 use nima_console::console::{commands::Action, wizards::Which};
@@ -18,18 +18,18 @@ fn the_endoscope_has_its_commands_where_its_picture_is() {
     let (_serving, endoscope) = eyes::lenses(Some(0.004));
     let endoscope = Endoscope { view: Some(StereoView::Left), baseline_m: Some(0.004), ..endoscope };
     let mut console = eyes::surgeon(endoscope, [1280.0, 720.0]);
-    eyes::told(&mut console, "Endoscope's picture: live");
+    eyes::told(&mut console, "Endoscope image: live");
     let is = |console: &mut Console, words: &str| {
         assert!(comes(console, TIMEOUT, |console| eyes::is_painted(console, words)), "never painted: {words}");
     };
-    is(&mut console, "Left half");
+    is(&mut console, "Left image");
     choose(&mut console, Action::Lens);
-    is(&mut console, "Right half");
+    is(&mut console, "Right image");
     by_key(&mut console, Action::Lens);
-    is(&mut console, "Both halves");
+    is(&mut console, "Both images");
     is(&mut console, "O hides them");
     choose(&mut console, Action::HideForces);
-    is(&mut console, "O draws the forces at the tips");
+    is(&mut console, "Forces are hidden; O draws them at the tips");
     by_key(&mut console, Action::HideForces);
     is(&mut console, "O hides them");
     console.key_press(Key::F2);

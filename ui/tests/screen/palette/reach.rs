@@ -1,4 +1,4 @@
-//! Who finds what: roles, and a participant in a trial.
+//! Available commands: by role, and for a participant in a trial.
 
 use nima_console::console::{
     Options,
@@ -74,11 +74,11 @@ fn a_participant_finds_only_what_a_trial_has() {
         assert!(greyed.contains(&(entry(blocked).title.clone(), false)), "{blocked:?}: {greyed:?}");
     }
     pick(&mut console, "a simulated hand");
-    pick(&mut console, "Begin the trial");
+    pick(&mut console, "Start the trial");
     wait(&mut console, "a trial", |console| console.state().in_trial());
     until(&mut console, "idle", |tick| tick.state == LoopState::Idle);
     let wanted =
-        ["Alarms", "Larger", "Smaller", "Mark this moment", "Acknowledge the alarms", "Stop", "Release stop", "Engage"];
+        ["Alarms", "Larger", "Smaller", "Mark this moment", "Acknowledge alarms", "Stop", "Release stop", "Engage"];
     assert_eq!(titles(&mut console), wanted);
     console.run_steps(30);
     choose(&mut console, Action::Engage);

@@ -1,4 +1,4 @@
-//! What is taken back, and what never is.
+//! Changes that can be undone, and those that cannot.
 
 use egui::accesskit::Role as Kind;
 use egui_kittest::kittest::Queryable as _;
@@ -12,10 +12,10 @@ use crate::{
     past,
 };
 
-/// What a person does.
+/// An action of a person.
 type Does<'a> = &'a dyn Fn(&mut Console);
 
-/// Commands that go to the machine, or are about it, are not taken back, however often.
+/// Commands for the machine are never undone.
 #[test]
 fn nothing_that_went_to_the_machine_is_undone() {
     let plan = plan("peg_transfer");
@@ -46,7 +46,7 @@ fn nothing_that_went_to_the_machine_is_undone() {
     for (name, act) in acts {
         act(&mut console);
         wait(&mut console, name, |_| !commands.lock().unwrap().is_empty());
-        // Until it is in force.
+        // Until it is active.
         std::thread::sleep(std::time::Duration::from_millis(200));
         console.run_steps(10);
         commands.lock().unwrap().clear();

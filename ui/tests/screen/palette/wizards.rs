@@ -9,7 +9,7 @@ use nima_testing::real_time::{alone, judged};
 use super::{alike, begin, choose, entry, expect, rows};
 use crate::bench::{Console, pick, shows, until};
 
-/// Which wizards cannot be opened, because one is open.
+/// Wizards that cannot be opened, because one is open.
 pub(super) fn open_pages(console: &mut Console) -> String {
     let all = console.query_all_by_role(Kind::Button).map(|button| button.accesskit_node());
     let ours = all.filter(|button| button.is_disabled() && button.label().unwrap_or_default().ends_with('…'));
@@ -39,7 +39,7 @@ fn every_wizard_is_opened_and_left() {
     done.push(Action::CloseWizard);
     let offered = rows(&mut console);
     assert!(offered.iter().all(|(title, _)| *title != entry(Action::Calibrate(Which::Camera)).title), "no endoscope");
-    // Those that need arms or an endoscope are opened in other tests.
+    // Other tests open those that need arms or an endoscope.
     done.extend(Which::ALL.into_iter().filter(|which| which.scene().is_none()).map(Action::Calibrate));
     expect(&done, "the wizards");
 }
@@ -47,7 +47,7 @@ fn every_wizard_is_opened_and_left() {
 #[cfg(target_os = "linux")]
 #[test]
 fn every_wizard_of_a_rig_with_arms_is_opened() {
-    // Its devices are emulated in real time: beside other work one of them may be lost, and no wizard is open to a fault.
+    // Its devices are emulated in real time: under other load one of them may be lost, and no wizard opens in a fault.
     judged(|| {
         let _alone = alone();
         let folder = tempfile::tempdir().unwrap();

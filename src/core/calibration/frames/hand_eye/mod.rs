@@ -1,8 +1,9 @@
-//! Hand-eye calibration: the marker on the flange and the tracker beside the arm, both at once.
+//! Hand-eye calibration: finds the marker on the flange and the tracker next to the arm together.
 //!
-//! In every pose `base_from_flange * flange_from_m = base_from_c * c_from_m`, in short `A X = Y B`. A published solver gives the
-//! start ([`Solver`]), Gauss and Newton's method on the rigid motions refines it, with the errors weighted as a tracker makes them.
-//! Errors are judged at the tip: where the tracker sees it against where the joints say that it is.
+//! In every pose `base_from_flange * flange_from_m = base_from_c * c_from_m`, in short `A X = Y B`. A published solver
+//! gives the start ([`Solver`]); a Gauss-Newton method on the rigid motions refines it, with the errors weighted by a
+//! tracker's noise. The errors are evaluated at the tip: its position from the tracker is compared with its position
+//! from the joints.
 
 mod refine;
 mod solvers;
@@ -20,32 +21,28 @@ use super::{
     tip::{of_turns, turned},
 };
 
-/// Which published solver gives the start.
+/// Published solver that gives the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
     /// Park and Martin, "Robot sensor calibration: solving AX = XB on the Euclidean group", IEEE Trans. Robot. Autom. 10, 1994:
     /// `X` from the motions between all pairs of poses, then `Y` as a mean.
     ParkMartin,
     /// Shah, "Solving the robot-world/hand-eye calibration problem using the Kronecker product", J. Mech. Robot. 5,
-    /// 2013: both rotations from one singular vector, then both places.
+    /// 2013: both rotations from one singular vector, then both positions.
     Shah,
 }
 
-/// Settings of a hand-eye calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandEye {
-    /// The tip in the flange's frame, m: where errors are judged.
+    /// The tip in the flange's frame, m, where the errors are evaluated.
     pub tip_in_flange_m: Vector3<f64>,
-    /// The solver that gives the start.
     pub solver: Solver,
-    /// Whether its result is refined.
     pub refine: bool,
-    /// Limits for the verdict.
     pub limits: Limits,
 }
 
 impl HandEye {
-    /// For an instrument with its tip here in the flange's frame, m.
+    /// Creates the settings for an instrument with its tip at this position in the flange's frame, m.
     pub const fn new(tip_in_flange_m: Vector3<f64>) -> Self {
         let limits = Limits {
             least: 10,
@@ -57,7 +54,6 @@ impl HandEye {
     }
 }
 
-/// Marker and tracker that were found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandEyeFound {
@@ -75,7 +71,7 @@ impl Found for HandEyeFound {
     }
 }
 
-/// One pose: `A` and `B`.
+/// `A` and `B` of one pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     base_from_flange: Isometry3<f64>,
@@ -164,8 +160,8 @@ impl Calibration for HandEye {
         FrameReport::of(have, found, uncertainty, value).judged(&self.limits)
     }
 
-    /// If arm and marker of different sides were taken, and both sides move, then either could be meant: the marker is named.
-    /// While the other side rests, the one that was exchanged is.
+    /// If arm and marker belong to different sides, and both sides move, either could be the wrong one: the marker is
+    /// reported. While the other side rests, the swapped one is reported.
     fn mistakes(&self) -> Vec<(Mistake, Carrier)> {
         let mut mistakes = vec![
             (Mistake::SwappedMarker, Carrier::Marker),
@@ -174,8 +170,8 @@ impl Calibration for HandEye {
             (Mistake::InverseRotation, Carrier::Marker),
             (Mistake::LeftHanded, Carrier::Marker),
         ];
-        // Every set of signs, those of one axis first: here each has a result of its own. All three together are a left-handed
-        // frame, turned.
+        // Every set of signs, single axes first, because each has its own result here. All three together are a
+        // left-handed frame, turned.
         let signs = [[true, false, false], [false, true, false], [false, false, true]];
         let more = [[true, true, false], [true, false, true], [false, true, true]];
         mistakes.extend(signs.into_iter().chain(more).map(|axes| (Mistake::WrongSign(axes), Carrier::Marker)));
@@ -183,7 +179,8 @@ impl Calibration for HandEye {
     }
 }
 
-/// Both must turn: a flange that turns beside a marker that does not is no hand-eye motion, but a swapped arm or marker.
+/// Both must turn: a turning flange with a marker that does not turn is not a hand-eye motion, but a swapped arm or
+/// marker.
 fn lacking(rows: &[Row]) -> Option<Cause> {
     let flange = Turns::of(rows.iter().map(|row| &row.base_from_flange));
     let marker = Turns::of(rows.iter().map(|row| &row.c_from_m));
@@ -191,8 +188,8 @@ fn lacking(rows: &[Row]) -> Option<Cause> {
 }
 
 impl HandEye {
-    /// At the tip, averaged over the poses, in the frame of the base; from the covariance of the refinement. Unknown (empty) if that
-    /// is not determined.
+    /// Returns the uncertainty at the tip, averaged over the poses, in the frame of the base, from the covariance of
+    /// the refinement. Empty if it is not determined.
     fn uncertainty(&self, rows: &[Row], frames: Frames) -> Sizes {
         let Some(Refined { covariance, freedom, .. }) = refine::unmoved(rows, frames) else { return Sizes::default() };
         let regions = rows.iter().map(|row| {

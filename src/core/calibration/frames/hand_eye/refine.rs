@@ -1,8 +1,8 @@
-//! Refinement of both frames: Gauss and Newton's method, damped after Levenberg and Marquardt, over two rigid motions.
+//! Refinement of both frames: the Gauss-Newton method, damped after Levenberg and Marquardt, over two rigid motions.
 //!
-//! The joints are exact beside the tracker, so the errors are those of `B` against `Y^-1 A X`, place and angle each divided by
-//! its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to `Y exp(y)` (place, then
-//! rotation vector).
+//! Compared with the tracker the joints are exact, so the errors are those of `B` relative to `Y^-1 A X`, position and
+//! angle each divided by its noise, as in Strobl and Hirzinger (IROS 2006). A step changes `X` to `X exp(x)` and `Y` to
+//! `Y exp(y)` (position, then rotation vector).
 
 use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
@@ -17,15 +17,15 @@ type Slopes = SMatrix<f64, 3, UNKNOWNS>;
 const NOISE_M: f64 = 0.25e-3;
 const NOISE_RAD: f64 = 3.5e-4;
 const STEPS: usize = 10;
-/// A step that lowers the sum of squares by a smaller share is the last. From a solver's start two or three are taken.
+/// A step that lowers the sum of squares by a smaller fraction is the last one. From a solver's start this takes two or
+/// three steps.
 const LAST_SHARE: f64 = 1e-7;
 
-/// Refined frames.
 pub(super) struct Refined {
     pub(super) frames: Frames,
-    /// Of a step: `x`, then `y`.
+    /// Covariance of a step: `x`, then `y`.
     pub(super) covariance: Normal,
-    /// Degrees of freedom of the variance in it.
+    /// Degrees of freedom of its variance.
     pub(super) freedom: usize,
 }
 
@@ -35,7 +35,7 @@ struct Linear {
     squares: f64,
 }
 
-/// The frames of least weighted squares near `start`; `None` if the poses do not determine them.
+/// Returns the frames of smallest weighted squares near `start`; `None` if the poses do not determine them.
 pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
     let mut frames = start;
     let mut here = linear(rows, &frames);
@@ -63,7 +63,7 @@ pub(super) fn refined(rows: &[Row], start: Frames) -> Option<Refined> {
     with_covariance(rows, frames, &here)
 }
 
-/// The covariance at these frames, without a step.
+/// Returns the covariance at these frames, without a step.
 pub(super) fn unmoved(rows: &[Row], frames: Frames) -> Option<Refined> {
     with_covariance(rows, frames, &linear(rows, &frames))
 }
@@ -111,7 +111,8 @@ fn moved(frames: &Frames, step: &Step) -> Frames {
     Frames { flange_from_m: frames.flange_from_m * motion(0), base_from_c: frames.base_from_c * motion(6) }
 }
 
-/// Change of the tip (m) and of its rotation vector (rad) as the tracker sees them in one pose, in the base's frame, per step.
+/// Returns the change per step of the tip (m) and of its rotation vector (rad), as the tracker measures them in one
+/// pose, in the base's frame.
 pub(super) fn slopes_at_tip(row: &Row, frames: &Frames, tip_in_flange_m: &Vector3<f64>) -> [Slopes; 2] {
     let in_m = frames.flange_from_m.inverse() * nalgebra::Point3::from(*tip_in_flange_m);
     let in_c = row.c_from_m * in_m;

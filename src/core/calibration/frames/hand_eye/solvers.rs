@@ -5,8 +5,8 @@ use nalgebra::{Isometry3, Matrix3, Matrix6, Rotation3, SMatrix, SymmetricEigen, 
 use super::{Frames, Row};
 use crate::calibration::{frames::spread::nearest_orthogonal, rotation_mean::RotationMean};
 
-/// Park and Martin's, over all pairs of poses: with the rotation vectors `a` and `b` of the motions of flange and marker,
-/// `a = R_X b`, so `R_X = (M^T M)^(-1/2) M^T` with `M = sum b a^T`; then the places by least squares.
+/// Solves by Park and Martin over all pairs of poses: with the rotation vectors `a` and `b` of the motions of flange
+/// and marker, `a = R_X b`, so `R_X = (M^T M)^(-1/2) M^T` with `M = sum b a^T`; then the positions by least squares.
 pub(super) fn park_martin(rows: &[Row]) -> Option<Frames> {
     let mut moment = Matrix3::zeros();
     for (i, one) in rows.iter().enumerate() {
@@ -26,8 +26,8 @@ pub(super) fn park_martin(rows: &[Row]) -> Option<Frames> {
     with_places(rows, x, mean.mean()?)
 }
 
-/// Shah's: `R_A R_X R_B^T = R_Y` is linear in the parts of both, `(R_B (x) R_A) vec(R_X) = vec(R_Y)`, so they are the singular
-/// vectors of the largest singular value of the sum.
+/// Solves by Shah: `R_A R_X R_B^T = R_Y` is linear in the entries of both, `(R_B (x) R_A) vec(R_X) = vec(R_Y)`, so they
+/// are the singular vectors of the largest singular value of the sum.
 pub(super) fn shah(rows: &[Row]) -> Option<Frames> {
     let mut sum = SMatrix::<f64, 9, 9>::zeros();
     for row in rows {
@@ -44,13 +44,13 @@ pub(super) fn shah(rows: &[Row]) -> Option<Frames> {
     with_places(rows, rotation(&(x * sign))?, rotation(&(y * sign))?)
 }
 
-/// The nearest rotation to a matrix.
+/// Returns the nearest rotation.
 fn rotation(matrix: &Matrix3<f64>) -> Option<UnitQuaternion<f64>> {
     let nearest = nearest_orthogonal(matrix, 1.0)?;
     Some(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(nearest)))
 }
 
-/// Both places for known rotations: `R_A t_X - t_Y = R_Y t_B - t_A`, least squares over all poses.
+/// Returns both positions for known rotations: `R_A t_X - t_Y = R_Y t_B - t_A`, least squares over all poses.
 fn with_places(rows: &[Row], x: UnitQuaternion<f64>, y: UnitQuaternion<f64>) -> Option<Frames> {
     let mut normal = Matrix6::zeros();
     let mut right = Vector6::zeros();

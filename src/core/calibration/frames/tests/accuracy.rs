@@ -1,4 +1,5 @@
-//! Errors against the true frames, on poses that no fit has seen. `--nocapture` prints the tables of docs/frames.md.
+//! Errors relative to the true frames, on poses that no fit has used. `--nocapture` prints the tables of
+//! docs/frames.md.
 
 use nalgebra::{Point3, Rotation3, UnitQuaternion, Vector3};
 
@@ -7,13 +8,12 @@ use crate::calibration::{Verdict, frames::*};
 
 const SEEDS: u64 = 200;
 
-/// Figures of many seeds.
 #[derive(Default)]
 struct Figures {
     place_mm: Vec<f64>,
     angle_deg: Vec<f64>,
     accepted: usize,
-    /// How often the error was within the told uncertainty.
+    /// Number of errors within the reported uncertainty.
     within: usize,
 }
 
@@ -27,7 +27,6 @@ impl Figures {
         self.angle_deg.extend(error.angle_deg);
     }
 
-    /// 95th percentiles: mm and degrees.
     fn p95(&self, name: &str) -> [f64; 2] {
         let of = |values: &[f64]| if values.is_empty() { 0.0 } else { p95(values.to_vec()) };
         let [place_mm, angle_deg] = [of(&self.place_mm), of(&self.angle_deg)];
@@ -75,7 +74,7 @@ fn hand_eye_is_within_half_a_millimetre_and_a_tenth_of_a_degree_at_the_tip() {
                 let (taken, others) = through_trocar().split_at(200);
                 let report = hand_eye.fit(&rig.samples(taken, count)).unwrap();
                 let found = report.found.unwrap();
-                // Another pose, seen without noise.
+                // Another pose, measured without noise.
                 let at = others[seed as usize % others.len()];
                 let seen = base_from_c().inverse() * at * flange_from_m();
                 let told = found.base_from_c.pose() * seen * found.flange_from_m.pose().inverse();
@@ -168,7 +167,7 @@ fn right_on_the_handle_is_right_in_the_picture() {
     let right_m = leader_from_view * Vector3::x() * 0.01;
     let seen = base_from_view().inverse() * mapping.to_tip(&right_m);
     assert!(seen.angle(&Vector3::x()).to_degrees() < 3.0, "{seen}");
-    // The same by a marker on the endoscope, after it was turned.
+    // With a marker on the endoscope, after the endoscope was turned.
     let c_from_n = any_turn(&mut rig);
     let turn = any_turn(&mut rig);
     let base_from_c = base_from_c().rotation;
@@ -190,7 +189,7 @@ fn a_sensor_mount_is_found_from_weight_and_agrees_or_names_the_axes() {
             assert!(found.agrees() && found.axes == Some(SignedAxes::SAME), "{found:?}");
             assert!((found.mass_kg - MASS_KG).abs() < 0.01 && (Vector3::from(found.bias_n) - BIAS_N).norm() < 0.1);
             figures.note(&report, Sizes::angle(found.flange_from_s1().angle_to(&flange_from_s1).to_degrees()));
-            // A mount in force that differs by a quarter turn about z: the measured x is its y.
+            // An active mount that differs by a quarter turn about z: the measured x is its y.
             let quarter = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
             let other = SensorMount::new(flange_from_s1 * quarter, Vector3::z());
             let found = other.fit(&samples).unwrap().found.unwrap();
@@ -213,14 +212,14 @@ fn a_gravity_pose_of_the_arm_serves_for_the_mount_too() {
         .map(|_| {
             let turn = any_turn(&mut rig);
             let wrench = weighed(&mut rig, turn, &truth).wrench.unwrap();
-            // The gravity session knows the orientation by the mount in force.
+            // The gravity session computes the orientation with the active mount.
             let orientation = Orientation::Arm(base * turn * in_force);
             FrameSample::of_gravity_pose(&Pose { wrench, has_torque: true, orientation }, &in_force, &base).unwrap()
         })
         .collect();
     let found = SensorMount::new(in_force, Vector3::z()).fit(&samples).unwrap().found.unwrap();
     assert!(found.flange_from_s1().angle_to(&truth).to_degrees() < 1.0 && !found.agrees(), "{found:?}");
-    assert!(found.axes == Some(SignedAxes::SAME), "5.7 degrees are no exchanged axes");
+    assert!(found.axes == Some(SignedAxes::SAME), "5.7 degrees are not swapped axes");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Data that determine nothing are refused, 1000 sets for each calibration, all with noise.
+//! Data that do not determine a result are refused; 1000 sets for each calibration, all with noise.
 
 use nalgebra::{Isometry3, Unit, UnitQuaternion, Vector3};
 
@@ -7,7 +7,7 @@ use crate::calibration::{Verdict, frames::*};
 
 const SETS: u64 = 1000;
 
-/// Turns that do not suffice: about one axis, too small, none at all.
+/// Returns insufficient turns: about one axis, too small, none at all.
 fn poor_turns(rig: &mut Rig, seed: u64, count: usize) -> Vec<UnitQuaternion<f64>> {
     let axis = Unit::new_normalize(rig.vector(1.0));
     let start = any_turn(rig);
@@ -32,12 +32,12 @@ fn turns_that_do_not_suffice_are_refused() {
         let pivoting: Vec<FrameSample> = turns
             .iter()
             .map(|turn| {
-                // No turn at all: a tip that wanders, as no dimple would allow.
+                // No turn at all: a tip that wanders, as a dimple would not allow.
                 let tip_m = TROCAR_M + if seed % 3 == 2 { rig.vector(0.05) } else { Vector3::zeros() };
                 rig.sample(&with_tip_at(&tip_m, *turn))
             })
             .collect();
-        // The other side stands still, as nobody uses it.
+        // The other side stands still because it is not used.
         let alone: Vec<FrameSample> = pivoting
             .iter()
             .map(|sample| FrameSample { c_from_other_m: None, other_base_from_flange: None, ..*sample })
@@ -82,7 +82,7 @@ fn points_on_a_line_are_refused() {
         let slope = rig.noise.gaussian();
         let mut points: Vec<[f64; 2]> = (0..6).map(|i| f64::from(i) * 0.03).map(|x| [x, x * slope]).collect();
         if seed % 2 == 0 {
-            // One point alone beside the line: nothing proves the plane.
+            // A single point off the line does not verify the plane.
             points[2] = [0.0, 0.1];
         }
         refused(&tables[(seed / 2 % 2) as usize], &touched(&mut rig, &points), seed);

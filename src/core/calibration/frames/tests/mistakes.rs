@@ -1,4 +1,4 @@
-//! Mistakes are named by their cause.
+//! Mistakes are reported with their cause.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,7 +7,7 @@ use crate::calibration::frames::*;
 
 const SEEDS: u64 = 50;
 
-/// In how many sets of samples this mistake is named. Undoing a mistake twice makes it.
+/// Returns the number of sample sets in which this mistake is reported. Undoing a mistake that is absent introduces it.
 fn named<C: Calibration>(
     calibration: &C,
     made: Mistake,
@@ -33,7 +33,7 @@ fn named<C: Calibration>(
 fn a_tip_names_swaps_inverses_and_signs() {
     for tip in [Tip::by_tracker(), Tip::by_arm()] {
         for made in Mistake::of_pivoting(tip.carrier) {
-            // An arm's poses come from its joints; whether they are inverse cannot be told there.
+            // An arm's poses come from its joints; inverse poses cannot be detected there.
             if made == Mistake::InversePose && tip.carrier == Carrier::Flange {
                 continue;
             }
@@ -83,7 +83,7 @@ fn a_table_names_swaps_and_exchanged_axes() {
     }
 }
 
-/// The other arm and marker rest while one works.
+/// Lets the other arm and marker rest while one works.
 fn resting(samples: &mut [FrameSample]) {
     let first = samples[0];
     for sample in samples {
@@ -122,7 +122,7 @@ fn a_view_names_swaps_and_mirrors_and_leaves_one_reversed_move_out() {
 #[test]
 fn a_sensor_mount_names_swaps_inverses_signs_and_exchanged_axes() {
     let in_force = pose([0.0; 3], [0.0, 0.0, 30.0]).rotation;
-    // The mount in force is a little off the truth.
+    // The active mount is a little off the truth.
     let truth = in_force * pose([0.0; 3], [1.0, 1.0, -1.0]).rotation;
     let mount = SensorMount::new(in_force, Vector3::z());
     for made in [Mistake::SwappedArm, Mistake::InverseRotation] {

@@ -1,5 +1,5 @@
-//! Every calibration on a simulated rig: accuracy against the truth, degenerate data, mistakes by their cause, sessions,
-//! records.
+//! Every calibration on a simulated rig: accuracy compared with the truth, degenerate data, causes of mistakes,
+//! sessions, records.
 
 mod accuracy;
 mod degenerate;

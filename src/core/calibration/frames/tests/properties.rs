@@ -1,4 +1,4 @@
-//! What holds for any input: no panic, exact results without noise, the same result in any frame.
+//! Properties that hold for any input: no panic, exact results without noise, the same result in any frame.
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -68,7 +68,7 @@ proptest! {
         let samples: Vec<FrameSample> = parts
             .iter()
             .enumerate()
-            // Many poses that are exactly the same, too.
+            // Includes many poses that are exactly equal.
             .map(|(i, _)| parts[i % (parts.len() / few)])
             .map(|[x, y, z, a, b, c]| Isometry3::new(Vector3::new(x, y, z), Vector3::new(a, b, c)))
             .map(|at| FrameSample {

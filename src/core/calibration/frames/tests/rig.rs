@@ -1,4 +1,4 @@
-//! A Gen3 with a usual instrument, a marker on it and a tracker beside it, all with known frames and noise.
+//! A Gen3 with a typical instrument, a marker on it and a tracker next to it, all with known frames and noise.
 
 use std::sync::OnceLock;
 
@@ -37,8 +37,8 @@ pub(crate) fn base_from_c() -> Isometry3<f64> {
     pose([1.3, 0.7, 0.9], [-115.0, 10.0, 140.0])
 }
 
-/// Joint angles that put the tip here with the shaft in this direction; `None` if the arm does not reach that. Newton's method with
-/// damping.
+/// Returns joint angles that put the tip here with the shaft in this direction; `None` if the arm does not reach it.
+/// Newton's method with damping.
 fn reached(tip_m: &Vector3<f64>, direction: &Vector3<f64>) -> Option<Joints> {
     let arm = arm();
     let mut joints = Joints::from(READY_RAD);
@@ -76,7 +76,7 @@ fn pool(seed: u64, cone_deg: f64, tip_m: impl Fn(&Vector3<f64>, &mut Noise) -> V
         let turn = std::f64::consts::TAU * noise.uniform();
         let direction = Vector3::new(tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), -tilt.cos());
         let Some(mut joints) = reached(&tip_m(&direction, &mut noise), &direction) else { continue };
-        // The last joint turns the instrument about its shaft; the marker must stay in sight.
+        // The last joint turns the instrument about its shaft; the marker must stay in view.
         joints[6] += (noise.uniform() - 0.5) * 100_f64.to_radians();
         poses.push(flange(&joints));
     }
@@ -95,7 +95,6 @@ pub(crate) fn in_dimple() -> &'static Pool {
     POOL.get_or_init(|| pool(2, 30.0, |_, _| TROCAR_M - Vector3::z() * 0.1))
 }
 
-/// A rig with its noise.
 pub(crate) struct Rig {
     pub(crate) noise: Noise,
 }
@@ -114,7 +113,7 @@ impl Rig {
         Isometry3::from_parts(place_m.into(), pose.rotation * UnitQuaternion::from_scaled_axis(self.vector(NOISE_RAD)))
     }
 
-    /// What is measured while this flange is here and the other arm somewhere else.
+    /// Measures with this flange pose and the other arm at a different pose.
     pub(crate) fn sample(&mut self, base_from_flange: &Isometry3<f64>) -> FrameSample {
         let other = through_trocar()[(self.noise.uniform() * 300.0) as usize];
         let seen = |flange: &Isometry3<f64>| base_from_c().inverse() * flange * flange_from_m();
@@ -143,7 +142,7 @@ pub(crate) fn tip_in(carrier: Carrier) -> Vector3<f64> {
     }
 }
 
-/// A flange pose with the tip here, the flange turned like this.
+/// Returns a flange pose with the tip here and this orientation of the flange.
 pub(crate) fn with_tip_at(tip_m: &Vector3<f64>, turn: UnitQuaternion<f64>) -> Isometry3<f64> {
     Isometry3::from_parts((tip_m - turn * TIP_IN_FLANGE_M).into(), turn)
 }
@@ -153,7 +152,7 @@ pub(crate) fn shaft_down() -> UnitQuaternion<f64> {
     from_roll_pitch_yaw_deg(&Vector3::new(180.0, 0.0, 0.0))
 }
 
-/// The value below which 95 % lie.
+/// Returns the value below which 95 % of the values lie.
 pub(crate) fn p95(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() * 95 / 100]

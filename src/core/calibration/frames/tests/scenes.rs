@@ -1,4 +1,5 @@
-//! Samples of the calibrations that are no pivoting: touched points, moves in the picture, still poses with a weight.
+//! Samples of the calibrations other than pivoting: touched points, moves in the camera image, still poses with a
+//! weight.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -15,7 +16,7 @@ pub(crate) fn base_from_table() -> Isometry3<f64> {
     pose([0.35, -0.1, -0.2], [2.0, -3.0, 35.0])
 }
 
-/// Points of the table (m, in its own frame) touched with the tip.
+/// Touches these points of the table (m, in its own frame) with the tip.
 pub(crate) fn touched(rig: &mut Rig, points_m: &[[f64; 2]]) -> Vec<FrameSample> {
     let touch = |[x, y]: &[f64; 2]| {
         let tip_m = base_from_table() * nalgebra::Point3::new(*x, *y, 0.0);
@@ -31,7 +32,7 @@ pub(crate) fn base_from_view() -> UnitQuaternion<f64> {
     pose([0.0; 3], [-130.0, 8.0, 70.0]).rotation
 }
 
-/// Ends of these moves of about 3 cm, `off_deg` away from their true directions.
+/// Returns the ends of these moves of about 3 cm, `off_deg` away from their true directions.
 pub(crate) fn moved(rig: &mut Rig, moves: &[Vector3<f64>], off_deg: f64) -> Vec<FrameSample> {
     let mut tip_m = TROCAR_M - Vector3::z() * 0.1;
     let mut samples = vec![rig.sample(&with_tip_at(&tip_m, shaft_down()))];
@@ -48,7 +49,7 @@ pub(crate) fn all_moves() -> Vec<Vector3<f64>> {
     Move::ALL.into_iter().map(Move::in_view).collect()
 }
 
-/// A still pose of the flange with the tool's weight, as a sensor with this mount reads it.
+/// Returns a still pose of the flange with the tool's weight, as read by a sensor with this mount.
 pub(crate) fn weighed(rig: &mut Rig, turn: UnitQuaternion<f64>, flange_from_s1: &UnitQuaternion<f64>) -> FrameSample {
     let mut sample = rig.sample(&with_tip_at(&TROCAR_M, turn));
     let weight_n = (turn * flange_from_s1).inverse() * Vector3::new(0.0, 0.0, -MASS_KG * GRAVITY_M_S2);

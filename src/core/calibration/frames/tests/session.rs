@@ -1,4 +1,4 @@
-//! Guided recording: still poses are taken, moved ones are not, what is missing is told.
+//! Guided recording: still poses are recorded, moving ones are not, and the missing part is reported.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -7,7 +7,7 @@ use crate::calibration::{Judgement, Record, RecordHead, Verdict, frames::*};
 
 const RATE_HZ: f64 = 60.0;
 
-/// Holds the flange for a second while it drifts with this speed, m/s; returns the states seen.
+/// Holds the flange for a second while it drifts at this speed, m/s; returns the observed states.
 fn hold<C: Calibration>(
     session: &mut FrameSession<C>,
     rig: &mut Rig,
@@ -92,7 +92,7 @@ fn a_marker_that_was_mistaken_for_the_other_is_recorded_and_named() {
         for _ in 0..40 {
             t_s += 1.0 / RATE_HZ;
             let sample = rig.sample(at);
-            // The instrument's marker is reported as the other's, and this one lies on a table.
+            // The instrument's marker is reported as the other's, and the actual other marker lies on a table.
             let c_from_m = Some(rig.noisy(&rest));
             let c_from_other_m = sample.c_from_m;
             session.step(&FrameSample { c_from_m, c_from_other_m, ..sample }, t_s);
@@ -120,7 +120,7 @@ fn a_view_session_asks_for_one_move_after_the_other() {
     assert_eq!(session.report().unwrap().verdict, Verdict::Accepted);
 }
 
-/// Through a file and back.
+/// Writes the report to a file and reads it back.
 fn stored<F: Found + PartialEq + std::fmt::Debug>(report: &FrameReport<F>) -> FrameRecord<F> {
     let serials = Serials { arm: Some("A-1".to_owned()), tracker: Some("P9".to_owned()), marker: None };
     let head = RecordHead::new("SN1", "grasper", "2026-11-22T10:00:00Z");

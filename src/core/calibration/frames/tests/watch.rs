@@ -1,4 +1,4 @@
-//! The watch over the trocar: no false alarm over an hour, a shift of 2 mm told within a second or two.
+//! The trocar watch: no false alarm over an hour, and a shift of 2 mm detected within one or two seconds.
 
 use nalgebra::Vector3;
 
@@ -7,11 +7,12 @@ use crate::calibration::frames::{ShaftLine, TrocarState, TrocarWatch};
 
 const RATE_HZ: f64 = 60.0;
 
-/// The shaft at time `t_s`, as a tracker sees it; `tilt` is the largest tilt in rad, pivoting once in four seconds.
+/// Returns the shaft at time `t_s`, as a tracker measures it; `tilt` is the largest tilt in rad, pivoting once in four
+/// seconds.
 fn line(rig: &mut Rig, trocar_m: &Vector3<f64>, tilt: f64, t_s: f64) -> ShaftLine {
     let (sin, cos) = (t_s * 1.57).sin_cos();
     let direction = Vector3::new(tilt * sin, tilt * cos, -1.0).normalize();
-    // The marker sits 0.3 m from the trocar.
+    // The marker is 0.3 m from the trocar.
     let noisy = (direction + rig.vector(NOISE_RAD)).normalize();
     ShaftLine { point_m: trocar_m - direction * 0.3 + rig.vector(NOISE_M), direction: noisy }
 }
@@ -35,7 +36,7 @@ fn an_hour_of_noise_gives_no_alarm() {
     }
 }
 
-/// Seconds until a shift is told.
+/// Returns the time until a shift is detected, s.
 fn told_after_s(rig: &mut Rig, shift_m: &Vector3<f64>, tilt: f64) -> Option<f64> {
     let mut watch = TrocarWatch::new(TROCAR_M, TrocarWatch::LIMIT_M);
     let start_s = 3.0 + 4.0 * rig.noise.uniform();
@@ -85,6 +86,6 @@ fn what_is_back_is_fine_and_what_is_no_line_changes_nothing() {
     assert!(matches!(watch.step(&broken, 8.1), TrocarState::Moved { .. }));
     assert!(matches!(go(&mut watch, 8.2, &TROCAR_M), TrocarState::Fine { .. }));
     let good = ShaftLine { point_m: TROCAR_M, direction: Vector3::z() };
-    assert_eq!(watch.step(&good, 20.0), TrocarState::Waiting, "after a gap it begins anew");
+    assert_eq!(watch.step(&good, 20.0), TrocarState::Waiting, "after a gap it restarts");
     assert_eq!(watch.step(&good, f64::NAN), TrocarState::Waiting);
 }

@@ -1,4 +1,4 @@
-//! A watch over a calibrated trocar: tells when patient or table have moved.
+//! Monitors a calibrated trocar and detects that the patient or the table has moved.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -6,33 +6,29 @@ use super::{ShaftLine, across};
 
 /// Time over which lines are averaged, s: at 60 Hz and 0.25 mm of noise 0.03 mm remain.
 const AVERAGE_S: f64 = 0.5;
-/// Share of a line's information at which a direction counts as seen: that of lines tilted by 13 degrees. Along the shaft nothing
-/// is seen until it pivots.
+/// Fraction of a line's information above which a direction counts as observed: the information of lines tilted by 13
+/// degrees. Along the shaft nothing is observed until it pivots.
 const SEEN: f64 = 0.05;
-/// After a longer gap the watch begins anew, s.
+/// After a longer gap the watch restarts, s, because the lines before it may be of another place. Chosen.
 const GAP_S: f64 = 1.0;
 
-/// What the watch tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TrocarState {
-    /// Not enough lines yet.
     Waiting,
-    /// The trocar is where it was.
     Fine {
-        /// Distance from there, m.
+        /// Distance from its calibrated position, m.
         by_m: f64,
     },
-    /// The trocar has moved.
     Moved {
-        /// Displacement, m, in the trocar's frame. Along the shaft it is seen only as far as the shaft pivots.
+        /// Displacement, m, in the trocar's frame. Along the shaft it is observed only as far as the shaft pivots.
         by_m: [f64; 3],
     },
 }
 
 /// Compares lines of the shaft with a trocar. Steps allocate nothing.
 ///
-/// A shift `x` of the trocar is the least-squares solution of `(I - d d^T) (x - (p - trocar)) = 0` over the lines of the last half
-/// second, exponentially weighted, and shrunk towards zero where no line tells it.
+/// A shift `x` of the trocar is the least-squares solution of `(I - d d^T) (x - (p - trocar)) = 0` over the lines of
+/// the last half second, exponentially weighted, and shrunk towards zero in directions that no line determines.
 #[derive(Clone, Debug)]
 pub struct TrocarWatch {
     trocar_m: Vector3<f64>,
@@ -45,11 +41,11 @@ pub struct TrocarWatch {
 }
 
 impl TrocarWatch {
-    /// The usual limit, m. Where the patient breathes, or the arm is less accurate, a larger one is needed.
+    /// Default limit, m. Breathing of the patient or a less accurate arm requires a larger one.
     pub const LIMIT_M: f64 = 1.0e-3;
 
-    /// A watch over this trocar, m, in the frame of the lines. It has moved when it is found further than `limit_m` from where
-    /// it was, and is back below half of that.
+    /// Creates a watch over this trocar, m, in the frame of the lines. The state is `Moved` when the trocar is more
+    /// than `limit_m` from its calibrated position, and `Fine` again below half of that.
     pub fn new(trocar_m: Vector3<f64>, limit_m: f64) -> Self {
         Self {
             trocar_m,
@@ -62,12 +58,11 @@ impl TrocarWatch {
         }
     }
 
-    /// What the watch tells now.
     pub const fn state(&self) -> TrocarState {
         self.state
     }
 
-    /// Adds a measured line at time `t_s` (s, rising). A line that is not finite changes nothing.
+    /// Adds a measured line at time `t_s` (s, increasing). A non-finite line changes nothing.
     pub fn step(&mut self, line: &ShaftLine, t_s: f64) -> TrocarState {
         let finite = line.point_m.iter().chain(&line.direction).all(|x| x.is_finite()) && t_s.is_finite();
         let follows = self.last_s.filter(|last_s| finite && t_s > *last_s);

@@ -1,4 +1,4 @@
-//! On the recorder's thread: what the hub must know, and no more.
+//! The part on the recorder's thread: forwards only the data that the hub needs.
 
 use std::sync::{Arc, atomic::Ordering};
 
@@ -27,7 +27,7 @@ impl Watching {
         Self { shared, outline, states: [None; SIDES] }
     }
 
-    /// Whether it has arrived.
+    /// Sends to the hub; returns whether the queue had room.
     fn tell(&self, told: Told) -> bool {
         let arrived = self.shared.told.try_send(told).is_ok();
         if !arrived {
@@ -53,7 +53,7 @@ impl Audience for Watching {
             return;
         }
         let arms = ticks.each_ref().map(|tick| tick.as_ref().map(Arm::of));
-        // A change that found no room is told with the next tick.
+        // A change that found no room is sent with the next tick.
         if self.tell(Told::Moment(Moment { t_s, arms })) {
             self.states = states;
         }

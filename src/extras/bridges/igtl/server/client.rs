@@ -1,4 +1,4 @@
-//! A client: what it wants, the thread that hears it, and the one that writes to it.
+//! A client: its requests, its reader thread and its writer thread.
 
 mod requests;
 mod wants;
@@ -26,16 +26,17 @@ use super::{
     picture::Desk,
 };
 
-/// A client that takes nothing for so long is given up.
+/// A client that accepts no data for this long is disconnected.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// How often its reader looks whether the connection has ended: on Windows ending it does not wake who waits for a request.
+/// Interval at which the reader checks whether the connection has ended: on Windows, closing it does not wake a waiting
+/// reader.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
-/// Bytes on their way, at most: little, so that a slow client gets what is new.
+/// Maximum bytes in transit: few, so that a slow client gets recent data.
 const SEND_BUFFER: usize = 1 << 16;
-/// So much is read of a client in this time, at most: 200 kB/s, more than 3000 requests a second. The rest waits on its side.
+/// At most this much is read from a client in this time: 200 kB/s, more than 3000 requests per second. The rest waits
+/// on the client's side.
 const CHUNK: usize = 1024;
 const READ_EVERY: Duration = Duration::from_millis(5);
-/// The only frame.
 const WORLD: &str = "world";
 
 pub(super) struct Client {
@@ -63,15 +64,15 @@ impl Client {
         self.gone.load(Ordering::Acquire)
     }
 
-    /// Ends the connection, and with it both threads.
+    /// Closes the connection, which ends both threads.
     pub(super) fn leave(&self) {
         self.gone.store(true, Ordering::Release);
-        // It may have ended on the other side.
+        // The other side may have closed it.
         self.stream.shutdown(Shutdown::Both).ok();
         self.mailbox.end();
     }
 
-    /// Writes what comes until the connection ends.
+    /// Writes data until the connection ends.
     pub(super) fn write(&self) {
         while let Some(bytes) = self.mailbox.next() {
             if (&self.stream).write_all(&bytes).is_err() {
@@ -81,7 +82,7 @@ impl Client {
         self.leave();
     }
 
-    /// Hears requests until the connection ends. `hurry` lets the loop's next tick be told.
+    /// Reads requests until the connection ends. `hurry` requests the loop's next tick.
     pub(super) fn read(&self, hurry: impl Fn(), desk: &Desk) {
         let mut requests = Requests::default();
         let mut chunk = [0; CHUNK];
@@ -119,7 +120,7 @@ impl Client {
                     self.answer(Content::Answer(kind, 0));
                 }
             },
-            // Who listens here cannot tell this program anything.
+            // Messages other than requests are ignored.
             Ok(_) => {}
             Err(error) => self.answer(refusal(StatusCode::ILLEGAL, &error.to_string())),
         }
@@ -143,7 +144,7 @@ impl Client {
     }
 }
 
-/// Whether the connection goes on.
+/// Whether the connection is still open.
 const fn is_nothing_yet(error: ErrorKind) -> bool {
     matches!(error, ErrorKind::Interrupted | ErrorKind::WouldBlock | ErrorKind::TimedOut)
 }
@@ -154,12 +155,12 @@ impl fmt::Debug for Client {
     }
 }
 
-/// Closes a connection for which there is no room, and says so.
+/// Closes a connection for which there is no room, with a message.
 pub(super) fn refuse(mut stream: &TcpStream, most: usize) {
     let text = format!("{most} clients are connected already: end one of them");
     let bytes = Message::new(BUNDLE, now_ns(), refusal(StatusCode::BUSY, &text)).encode();
     stream.set_nonblocking(true).ok();
-    // A new connection has room for this; if not, there is nobody to tell.
+    // A new connection has room for this; if not, there is no client to inform.
     stream.write_all(&bytes).ok();
     stream.shutdown(Shutdown::Write).ok();
 }
@@ -168,7 +169,7 @@ pub(super) fn refusal(code: StatusCode, text: &str) -> Content {
     Content::Status(Status { code, subcode: 0, name: String::new(), text: text.to_owned() })
 }
 
-/// What can be had here.
+/// The supported message types.
 fn capabilities() -> Vec<String> {
     let told = Kind::ALL.map(|kind| kind.name().to_owned());
     let asked = [Verb::Get, Verb::Start, Verb::Stop].into_iter().flat_map(|verb| {
@@ -178,7 +179,7 @@ fn capabilities() -> Vec<String> {
     told.into_iter().chain(asked).collect()
 }
 
-/// Now, ns since 1970.
+/// ns since 1970.
 pub(super) fn now_ns() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }

@@ -1,4 +1,4 @@
-//! Makes messages of what the loop does, for each client.
+//! Converts the state of the loop into messages for each client.
 
 use std::{
     sync::Arc,
@@ -15,11 +15,11 @@ use super::{
     moment::{BUNDLE, Moment, Told, Writer},
 };
 
-/// How often is looked for clients that are gone, and for states that are due.
+/// Interval of the checks for disconnected clients and due states.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// Every client is told this often how the loop is.
+/// Every client gets the status of the loop at this interval.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
-/// A loop that tells nothing for so long does not run, although a client wants something of every tick that is due.
+/// A loop that sends nothing for this long is not running, even though a client has requested data.
 const SILENT: Duration = Duration::from_secs(2);
 
 pub(super) struct Hub {
@@ -37,7 +37,7 @@ impl Hub {
         Self { shared, outline: Outline::default(), started_ns: 0, newest: None, heard: now, looked: now }
     }
 
-    /// Until the server ends.
+    /// Runs until the server ends.
     pub(super) fn run(mut self, hears: &Hears) {
         while !self.shared.is_ending() {
             match hears.recv_timeout(LOOK_EVERY) {
@@ -67,7 +67,7 @@ impl Hub {
         self.started_ns.saturating_add_signed((t_s * 1e9).round() as i64)
     }
 
-    /// The loop did this.
+    /// Processes a state of the loop.
     fn moment(&mut self, moment: Moment) {
         let has_changed = self.newest.as_ref().map(states) != Some(states(&moment));
         self.newest = Some(moment);
@@ -98,7 +98,7 @@ impl Hub {
             }
             due_s = due_s.min(wants.due_s);
         }
-        // With the clients at hand, so that what somebody wants meanwhile is not forgotten.
+        // Set while holding the clients, so that a new request is not overwritten.
         self.shared.set_due(due_s - EARLY_S);
     }
 
@@ -123,7 +123,7 @@ impl Hub {
         }
     }
 
-    /// How the loop is, for all who want to know.
+    /// Sends the status of the loop to all clients that have requested it.
     fn tell_all(&self) {
         for client in self.shared.clients().iter() {
             let mut wants = client.wants();
@@ -150,7 +150,7 @@ impl Hub {
 }
 
 fn no_loop() -> Content {
-    refusal(StatusCode::NOT_READY, "nothing is told now: no loop runs, or a trial of a blind study does")
+    refusal(StatusCode::NOT_READY, "no data now: no loop is running, or a trial of a blind study is")
 }
 
 fn states(moment: &Moment) -> [Option<LoopState>; SIDES] {

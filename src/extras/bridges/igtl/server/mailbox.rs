@@ -1,14 +1,15 @@
-//! What waits for a client: little, and the newest.
+//! The short queue of a client, which keeps the newest data.
 
 use std::{
     collections::VecDeque,
     sync::{Condvar, Mutex, MutexGuard, PoisonError},
 };
 
-/// Answers and states that wait, at most; then the oldest is lost.
+/// Maximum number of waiting answers and states; beyond it the oldest is dropped.
 const MOST_TOLD: usize = 64;
 
-/// Between the hub and a client's writer. Neither waits for the other: the lock is held while something is put in or taken out.
+/// Between the hub and a client's writer. Neither waits for the other: the lock is held only for adding or removing an
+/// entry.
 #[derive(Debug, Default)]
 pub(super) struct Mailbox {
     mail: Mutex<Mail>,
@@ -20,7 +21,7 @@ struct Mail {
     told: VecDeque<Vec<u8>>,
     bundle: Option<Vec<u8>>,
     picture: Option<Vec<u8>>,
-    /// Bundles and pictures that a newer one has replaced, and answers that were lost.
+    /// Bundles and images replaced by newer ones, and dropped answers.
     replaced: u64,
     ends: bool,
 }
@@ -41,38 +42,38 @@ impl Mailbox {
         self.comes.notify_one();
     }
 
-    /// The newest bundle.
+    /// Sets the newest bundle.
     pub(super) fn bundle(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
         mail.replaced += u64::from(mail.bundle.replace(bytes).is_some());
         self.comes.notify_one();
     }
 
-    /// The newest picture.
+    /// Sets the newest image.
     pub(super) fn picture(&self, bytes: Vec<u8>) {
         let mut mail = self.mail();
         mail.replaced += u64::from(mail.picture.replace(bytes).is_some());
         self.comes.notify_one();
     }
 
-    /// Whether a picture still waits: another one would be made for nothing.
+    /// Whether an image is waiting, so that another one would be wasted.
     pub(super) fn has_picture(&self) -> bool {
         self.mail().picture.is_some()
     }
 
-    /// How much a newer one has replaced.
+    /// Number of replaced and dropped entries.
     #[cfg(test)]
     pub(super) fn replaced(&self) -> u64 {
         self.mail().replaced
     }
 
-    /// Nothing more is wanted.
+    /// Closes the mailbox.
     pub(super) fn end(&self) {
         self.mail().ends = true;
         self.comes.notify_one();
     }
 
-    /// What is next; waits for it. `None` at the end.
+    /// Waits for the next entry. `None` at the end.
     pub(super) fn next(&self) -> Option<Vec<u8>> {
         let mut mail = self.mail();
         loop {

@@ -1,4 +1,4 @@
-//! What a loop does at one time, and the messages that say it.
+//! The state of a loop at one time, and its messages.
 
 use nalgebra::Vector3;
 use nima_core::safety::State;
@@ -13,18 +13,18 @@ use super::{
     Outline, StateWords,
 };
 
-/// What the hub is told.
+/// Input of the hub.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Told {
-    /// A loop begins, at this time of its clock's zero (ns since 1970).
+    /// A loop begins; its clock started at this time (ns since 1970).
     Begins(u64, Outline),
-    /// What it does.
+    /// Its state.
     Moment(Moment),
     /// It has ended.
     Ends,
 }
 
-/// What a loop does at one time.
+/// The state of a loop at one time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     /// Time of the loop, s.
@@ -32,7 +32,7 @@ pub(super) struct Moment {
     pub(super) arms: [Option<Arm>; SIDES],
 }
 
-/// An arm pair; places in m and forces in N, in `world`.
+/// An arm pair; positions in m and forces in N, in `world`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arm {
     pub(super) state: LoopState,
@@ -49,7 +49,7 @@ impl Arm {
     }
 }
 
-/// Names of what is told of a side: `right.tip`.
+/// Names of the messages of a side, as in `right.tip`.
 pub(super) const TIP: &str = "tip";
 const LEADER: &str = "leader";
 const MEASURED: &str = "measured";
@@ -64,7 +64,7 @@ pub(super) fn name(side: Side, what: &str) -> String {
     format!("{}.{what}", side.word())
 }
 
-/// Messages of a moment.
+/// Writes the messages of a state.
 #[derive(Debug)]
 pub(super) struct Writer<'a> {
     pub(super) moment: &'a Moment,
@@ -72,7 +72,7 @@ pub(super) struct Writer<'a> {
     pub(super) time_ns: u64,
 }
 
-/// A pose that is known: its name, what is known of it, and where and how turned.
+/// A known pose: its name, its known part, position and orientation.
 struct Known {
     name: String,
     kind: ToolKind,
@@ -80,7 +80,7 @@ struct Known {
 }
 
 impl Writer<'_> {
-    /// Adds the messages of this kind. Pictures and what a program can do are no part of a moment.
+    /// Appends the messages of this kind. Images and supported types are not part of a state.
     pub(super) fn put(&self, kind: Kind, bytes: &mut Vec<u8>) {
         let mut add = |device: &str, content| Message::new(device, self.time_ns, content).put(bytes);
         match kind {
@@ -114,7 +114,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Adds the status of every arm.
+    /// Appends the status of every arm.
     pub(super) fn put_status(&self, words: StateWords, bytes: &mut Vec<u8>) {
         for (side, arm) in self.arms() {
             let status = status(arm.state, words(arm.state));
@@ -143,7 +143,7 @@ impl Writer<'_> {
             .flatten()
     }
 
-    /// The same for programs that know no sensors and no status.
+    /// The same as text, for programs without support for sensors and status.
     fn text(&self) -> String {
         let mut all = Map::from_iter([("t_s".to_owned(), json!(self.moment.t_s))]);
         for (side, arm) in self.arms() {
@@ -161,7 +161,7 @@ impl Writer<'_> {
     }
 }
 
-/// How an arm is, as a status.
+/// Status of an arm.
 pub(super) fn status(state: LoopState, text: String) -> Status {
     let (code, subcode) = match state {
         State::Disconnected => (StatusCode::ABSENT, 0),
@@ -180,7 +180,8 @@ fn is_finite(of: &Vector3<f64>) -> bool {
     of.iter().all(|number| number.is_finite())
 }
 
-/// Columns of a rotation whose z axis is the shaft's, out of the tip. How the instrument is turned about its shaft is not known: the x axis is level.
+/// Columns of a rotation whose z axis is the shaft's, pointing out of the tip. The instrument's rotation about its
+/// shaft is unknown: the x axis is horizontal.
 fn along(shaft_m: &Vector3<f64>) -> Option<[[f32; 3]; 3]> {
     let z = shaft_m.try_normalize(SHORTEST_M).filter(is_finite)?;
     let x = z.cross(&Vector3::z()).try_normalize(1e-6).unwrap_or_else(Vector3::x);

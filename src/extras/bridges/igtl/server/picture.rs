@@ -1,4 +1,4 @@
-//! Pictures of the endoscope for the clients that ask for them.
+//! Endoscope images for the clients that request them.
 
 use std::{
     fmt::Debug,
@@ -13,16 +13,17 @@ use super::{
     client::now_ns,
 };
 
-/// How often is looked whether somebody wants a picture, and whether there is one.
+/// Interval of the checks for requests and new images.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
-/// Where pictures come from. Asked on a thread of the server's own.
+/// A source of images. Called on the server's own thread.
 pub trait Pictures: Send + Debug {
-    /// The newest picture, if it was not taken yet, and its age. `is_wanted` tells whether anybody looks: without, nothing need be kept.
+    /// Returns the newest image, if it has not been taken yet, and its age. Without `is_wanted` the source need not
+    /// keep images.
     fn newest(&mut self, is_wanted: bool) -> Option<(Image, Duration)>;
 }
 
-/// Where the source lies, once there is one.
+/// Holds the source, once there is one.
 #[derive(Debug, Default)]
 pub(super) struct Desk(Mutex<Option<Box<dyn Pictures>>>);
 
@@ -35,19 +36,19 @@ impl Desk {
         *self.source() = source;
     }
 
-    /// Whether there can be pictures.
+    /// Whether there is a source.
     pub(super) fn is_taken(&self) -> bool {
         self.source().is_some()
     }
 }
 
-/// Hands pictures over until the server ends.
+/// Delivers images until the server ends.
 pub(super) fn serve(shared: &Shared) {
     while !shared.is_ending() {
         sleep(LOOK_EVERY);
         let looking: Vec<_> =
             shared.clients().iter().filter(|client| !client.is_gone() && client.wants().looks()).cloned().collect();
-        // Who has not taken the last one yet needs no other.
+        // A client that has not taken the last image yet needs no other.
         let is_wanted = looking.iter().any(|client| !client.mailbox.has_picture());
         let newest = shared.pictures.source().as_mut().and_then(|source| source.newest(is_wanted));
         let Some((image, age)) = newest.filter(|_| is_wanted) else { continue };

@@ -1,4 +1,4 @@
-//! The server against clients over real sockets, fed by a loop as a recorder feeds it.
+//! The server against clients over real sockets, fed by a loop in the way of a recorder.
 
 mod figures;
 
@@ -38,7 +38,7 @@ impl Rig {
         Self { control: Loop::new(&rig, &[Some(Calibrations::default()), None]).unwrap(), ticks: 0 }
     }
 
-    /// The next tick, told as a recorder does.
+    /// Runs the next tick and reports it like a recorder.
     fn step(&mut self, audience: &mut dyn Audience) -> [Option<Tick>; SIDES] {
         let t_s = f64::from(self.ticks) * 1e-3;
         let hand = Hand::at(Vector3::new(0.0, 0.0, 0.01 * (6.0 * t_s).sin()));
@@ -81,7 +81,7 @@ impl Runs {
         Self { ends, thread: Some(spawn(run)) }
     }
 
-    /// What it did.
+    /// Ends the loop; returns its ticks.
     fn end(mut self) -> Vec<[Option<Tick>; SIDES]> {
         self.ends.store(true, Ordering::Relaxed);
         self.thread.take().unwrap().join().unwrap()
@@ -116,7 +116,7 @@ impl Peer {
         Some(Message::read(&header, &body).unwrap())
     }
 
-    /// The next message for which this gives something.
+    /// Returns the first value that `wanted` finds in the next messages.
     fn find<T>(&mut self, wanted: impl Fn(&Message) -> Option<T>) -> T {
         loop {
             let message = self.next().expect("the connection ended");
@@ -126,7 +126,7 @@ impl Peer {
         }
     }
 
-    /// The next message of this device that is of this kind.
+    /// Returns the next message of this device and this kind.
     fn of_device(&mut self, device: &str, kind: Kind) -> Message {
         self.find(|message| {
             (message.device == device && message.content.kind() == kind.name()).then(|| message.clone())
@@ -174,7 +174,7 @@ fn a_client_gets_tips_handles_forces_and_states_of_the_same_tick_without_asking(
         (engaged.device.as_str(), status.code, status.text.as_str()),
         ("right.state", StatusCode::OK, "it is Engaged")
     );
-    // A state goes before a bundle that waits, which may be of an earlier tick.
+    // A state precedes a waiting bundle, which may belong to an earlier tick.
     let tip = peer.find(|message| {
         let is_later = message.device == "right.tip" && message.time_ns >= engaged.time_ns;
         (is_later && message.content.kind() == Kind::Transform.name()).then(|| message.clone())
@@ -185,7 +185,7 @@ fn a_client_gets_tips_handles_forces_and_states_of_the_same_tick_without_asking(
     let Content::Sensor(rendered) = peer.of_device("right.rendered", Kind::Sensor).content else { unreachable!() };
     let Content::Text(text) = peer.of_device("nima", Kind::Text).content else { unreachable!() };
     let ticks = runs.end();
-    // One bundle is of one tick, with its time.
+    // A bundle belongs to a single tick, with its time.
     assert_eq!(tip.time_ns, bundle.time_ns);
     let number = ((tip.time_ns - STARTED_NS) as f64 / 1e6).round() as usize;
     let tick = ticks[number][0].unwrap();
@@ -230,7 +230,7 @@ fn requests_are_answered_and_what_was_stopped_does_not_come() {
         })
         .collect();
     for pair in times.windows(2) {
-        // A bundle may have been replaced by a newer one; none comes too early.
+        // A bundle may have been replaced by a newer one; none arrives too early.
         let between_ms = ((pair[1] - pair[0]) as f64 / 1e6).round();
         assert!(between_ms >= 50.0 && between_ms % 50.0 < 1.5, "{between_ms} ms");
     }
@@ -247,7 +247,7 @@ fn requests_are_answered_and_what_was_stopped_does_not_come() {
     assert_eq!(peer.answer(Kind::Image), 1, "there is no endoscope");
 }
 
-/// A picture that is another one each time.
+/// An image that changes every time.
 #[derive(Debug)]
 struct Grey(u8);
 
@@ -283,7 +283,7 @@ fn pictures_come_once_or_again_and_again_as_they_are_asked_for() {
 fn one_loop_follows_the_other_and_between_them_clients_are_told() {
     let server = server();
     let mut peer = Peer::of(&server);
-    assert!(peer.status(StatusCode::NOT_READY).text.contains("nothing is told now"));
+    assert!(peer.status(StatusCode::NOT_READY).text.contains("no data now"));
     for _ in 0..2 {
         let runs = Runs::on(&server);
         assert_eq!(peer.status(StatusCode::OK).name, State::<()>::Idle.word());
@@ -304,7 +304,7 @@ fn clients_that_stall_flood_or_die_harm_nobody() {
     let mut killed = Peer::of(&server);
     killed.0.write_all(&Message::new("", 0, Content::Request(Verb::Get, Kind::Status, None)).encode()[..40]).unwrap();
     drop(killed);
-    // Sends more than anybody reads: requests, and bytes that are no messages.
+    // Sends more than the server reads: requests, and bytes that are not messages.
     let request = Message::new("", 0, Content::Request(Verb::Get, Kind::Capability, None)).encode().repeat(1000);
     let ends = Arc::new(AtomicBool::new(false));
     let flood = |bytes: Vec<u8>| {
@@ -321,7 +321,7 @@ fn clients_that_stall_flood_or_die_harm_nobody() {
     for _ in 0..120 {
         good.of_device("nima", Kind::Tracking);
     }
-    // Whose connection is gone counts no more; the one that reads nothing is given up once its buffers are full.
+    // A closed connection no longer counts; the client that reads nothing is disconnected once its buffers are full.
     good.0.set_read_timeout(None).unwrap();
     let reads = spawn(move || while good.next().is_some() {});
     ends.store(true, Ordering::Relaxed);
@@ -372,7 +372,7 @@ fn an_address_in_use_is_told_in_one_line_and_is_free_when_the_server_has_ended()
     let server = server();
     let address = server.address();
     let error = Server::start(address, |_| String::new()).unwrap_err().to_string();
-    assert!(error.contains(&address.to_string()) && error.contains("name another one"), "{error}");
+    assert!(error.contains(&address.to_string()) && error.contains("choose another port"), "{error}");
     assert_eq!(error.lines().count(), 1);
     let mut audience = server.audience(Outline::default());
     let _peer = Peer::of(&server);

@@ -1,5 +1,5 @@
-//! Messages as the reference library writes them: facts of the protocol, from the vectors of its own tests (The `OpenIGTLink` Library,
-//! 3-clause BSD licence), as listed by the project openigtlink-ng.
+//! Messages as written by the reference library: facts of the protocol, from the vectors of its own tests (The
+//! `OpenIGTLink` Library, 3-clause BSD licence), as listed by the project openigtlink-ng.
 
 #[rustfmt::skip]
 pub(super) const ALL: [(&str, &str); 10] = [

@@ -9,14 +9,14 @@ use std::{
 use nima_bridges::igtl::{Content, Header, Kind, Message, Stream, Verb};
 
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Longest body that is read, bytes; ours are shorter.
+/// Maximum body that is read, bytes; ours are shorter.
 const LONGEST: u64 = 1 << 16;
 
 #[derive(Debug)]
 pub struct Link(TcpStream);
 
 impl Link {
-    /// Connects, and asks for poses with quaternions, forces and states, so many times a second.
+    /// Connects, and requests poses with quaternions, forces and states at this rate.
     pub fn open(address: SocketAddr, rate_hz: u32) -> io::Result<Self> {
         let stream = TcpStream::connect_timeout(&address, PATIENCE)?;
         stream.set_nodelay(true)?;
@@ -35,7 +35,7 @@ impl Link {
         self.0.write_all(&Message::new("", 0, Content::Request(verb, kind, stream)).encode())
     }
 
-    /// The next message; waits for it. A status comes once a second.
+    /// Waits for the next message. A status arrives once per second.
     pub fn next(&mut self) -> io::Result<Message> {
         let wrong = |error| io::Error::new(io::ErrorKind::InvalidData, error);
         let mut head = [0; Header::BYTES];

@@ -1,5 +1,6 @@
-//! `nima-bridge-ros2`: poses, forces and states of a loop as ROS 2 topics. A client of the console's `OpenIGTLink` server (`--igtl`), which tells and
-//! hears nothing else; this program subscribes to no topic. What it publishes is in `docs/bridges.md`.
+//! `nima-bridge-ros2`: poses, forces and states of a loop as ROS 2 topics. A client of the console's `OpenIGTLink`
+//! server (`--igtl`), which only sends. This program subscribes to no topic. Its topics are described in
+//! `docs/bridges.md`.
 
 mod link;
 mod publish;
@@ -17,31 +18,32 @@ use clap::Parser;
 
 use crate::{link::Link, publish::Publisher};
 
-/// Between two attempts to reach the console.
+/// Interval between two attempts to connect to the console.
 const AGAIN: Duration = Duration::from_secs(1);
 
 /// Publishes poses, forces and states of a running loop of NIMA Console as ROS 2 topics with the names of CRTK
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
-    /// Where `nima run --igtl` or `nima console --igtl` listens
+    /// Address at which `nima run --igtl` or `nima console --igtl` listens
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:18944")]
     from: SocketAddr,
-    /// Addresses of this computer in the networks that may read, with commas; 127.0.0.1 is this computer alone, 0.0.0.0 every network
+    /// Addresses of this computer in the networks that may read, separated by commas; 127.0.0.1: this computer only,
+    /// 0.0.0.0: every network
     #[arg(long, value_name = "ADDRESSES", default_value = "127.0.0.1", value_delimiter = ',', value_parser = own_address)]
     network: Vec<Ipv4Addr>,
-    /// Domain of ROS 2
+    /// ROS 2 domain
     #[arg(long, value_name = "N", env = "ROS_DOMAIN_ID", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=232))]
     domain: u16,
     /// Namespace of the topics
     #[arg(long, value_name = "NAME", default_value = "nima", value_parser = namespace)]
     namespace: String,
-    /// Poses and forces in a second, 1 to 100
+    /// Poses and forces per second, 1 to 100
     #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100))]
     rate: u32,
 }
 
-/// A name as ROS 2 allows it: letters, digits, underscores, parts between slashes.
+/// Checks a name by the rules of ROS 2: letters, digits, underscores, parts between slashes.
 fn namespace(text: &str) -> Result<String, String> {
     let is_part = |part: &str| {
         part.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')
@@ -55,13 +57,13 @@ fn namespace(text: &str) -> Result<String, String> {
     }
 }
 
-/// DDS would take a foreign address too, and be heard by nobody.
+/// DDS would accept a foreign address too, but no reader would receive anything.
 fn own_address(text: &str) -> Result<Ipv4Addr, String> {
     let address: Ipv4Addr = text.parse().map_err(|_| "give an address as 192.168.1.5".to_owned())?;
     UdpSocket::bind((address, 0)).map(|_| address).map_err(|_| "no address of this computer".to_owned())
 }
 
-/// What a lost connection means, and what to do.
+/// Explains a lost connection, with the remedy.
 fn words(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => "nothing came for 5 s; is this the console?".to_owned(),
@@ -96,7 +98,7 @@ fn main() -> ExitCode {
             }
         });
         publisher.publish(&topics::unknown(now_ns()));
-        // The same reason once.
+        // Report the same reason only once.
         if let Err::<(), _>(error) = ended {
             let words = words(&error);
             if words != told {
@@ -133,7 +135,7 @@ mod tests {
         let network = |arguments: &[&str]| Arguments::try_parse_from(arguments).map(|all| all.network);
         assert_eq!(network(&["x"]).unwrap(), [Ipv4Addr::LOCALHOST]);
         assert_eq!(network(&["x", "--network", "127.0.0.1,127.0.0.2"]).unwrap().len(), 2);
-        // An address for documentation (RFC 5737), which nobody has.
+        // An address reserved for documentation (RFC 5737), which no computer has.
         for foreign in ["203.0.113.77", "lo"] {
             assert!(network(&["x", "--network", foreign]).is_err(), "{foreign}");
         }

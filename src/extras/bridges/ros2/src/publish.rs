@@ -20,14 +20,14 @@ enum OfTopic {
     State(Writer<OperatingState>),
 }
 
-/// Publishes samples of both arms.
 pub struct Publisher {
     writers: BTreeMap<(Side, Topic), OfTopic>,
-    /// Without it nothing is published any more.
+    /// Dropping it ends the publication.
     _node: Node,
 }
 
-/// Reliable, so that readers of either kind match; the newest sample only, so that nobody waits for what is old.
+/// Reliable, so that it matches readers of either kind; only the newest sample is kept, so that no reader waits for old
+/// ones.
 fn usual() -> QosProfile {
     QosProfile::publisher_default()
         .reliability_reliable(WhenFull::Fail)
@@ -35,7 +35,7 @@ fn usual() -> QosProfile {
 }
 
 impl Publisher {
-    /// Of this domain and namespace; announced in the networks of these addresses alone, or in all of them.
+    /// Publishes in this domain and namespace; announced only in the networks of these addresses, or in all of them.
     pub fn new(domain: u16, networks: &[Ipv4Addr], namespace: &str) -> Result<Self, String> {
         let mut builder = DomainParticipantBuilder::new(domain);
         if !networks.iter().any(Ipv4Addr::is_unspecified) {
@@ -56,7 +56,7 @@ impl Publisher {
         Ok(Self { writers, _node: node })
     }
 
-    /// Hands samples to their readers. One that cannot be written now is followed by the next one.
+    /// Publishes samples. A sample that cannot be written now is superseded by the next one.
     pub fn publish(&self, samples: &[Sample]) {
         for sample in samples {
             self.write(sample);
@@ -81,7 +81,7 @@ fn of_topic(node: &mut Node, name: &Name, topic: Topic) -> Result<OfTopic, Strin
         Topic::MeasuredCf | Topic::RenderedCf => {
             OfTopic::Wrench(writer(node, name, ["geometry_msgs", "WrenchStamped"], usual())?)
         }
-        // Who comes late learns the state at once.
+        // A late reader gets the state at once.
         Topic::OperatingState => {
             let qos = usual().durability(Durability::TransientLocal);
             OfTopic::State(writer(node, name, ["crtk_msgs", "OperatingState"], qos)?)

@@ -1,4 +1,4 @@
-//! What is published, under which names of CRTK (<https://crtk-robotics.readthedocs.io>).
+//! The published topics, with their CRTK names (<https://crtk-robotics.readthedocs.io>).
 
 use nima_bridges::igtl::{Content, Message, Position, Sensor, Status, StatusCode, Unit};
 use serde::{Deserialize, Serialize};
@@ -62,7 +62,6 @@ pub struct OperatingState {
     is_busy: bool,
 }
 
-/// An arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     Right,
@@ -80,7 +79,7 @@ impl Side {
     }
 }
 
-/// Where a sample of an arm goes.
+/// Topic of an arm's sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Topic {
     MeasuredCp,
@@ -94,7 +93,7 @@ impl Topic {
     pub const ALL: [Self; 5] =
         [Self::MeasuredCp, Self::SetpointCp, Self::MeasuredCf, Self::RenderedCf, Self::OperatingState];
 
-    /// Its name behind that of the arm.
+    /// Its name, following the arm's.
     pub const fn name(self) -> &'static str {
         match self {
             Self::MeasuredCp => "measured_cp",
@@ -106,7 +105,6 @@ impl Topic {
     }
 }
 
-/// What is published.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
     Pose(PoseStamped),
@@ -114,7 +112,6 @@ pub enum Data {
     State(OperatingState),
 }
 
-/// A sample of an arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     pub side: Side,
@@ -123,7 +120,7 @@ pub struct Sample {
 }
 
 impl Header {
-    /// `None` beyond the year 2038, which ROS 2 cannot tell.
+    /// `None` beyond the year 2038, which ROS 2 cannot represent.
     fn at(time_ns: u64) -> Option<Self> {
         let sec = i32::try_from(time_ns / 1_000_000_000).ok()?;
         let stamp = Time { sec, nanosec: (time_ns % 1_000_000_000) as u32 };
@@ -131,7 +128,7 @@ impl Header {
     }
 }
 
-/// What a message becomes; nothing for those that have no topic.
+/// Returns the samples of a message; empty for messages without a topic.
 pub fn samples(message: &Message) -> Vec<Sample> {
     match &message.content {
         Content::Status(status) if status.code == StatusCode::NOT_READY => unknown(message.time_ns),
@@ -139,7 +136,7 @@ pub fn samples(message: &Message) -> Vec<Sample> {
     }
 }
 
-/// States of both arms while nothing is told of them: who comes late would take the last ones for those of now.
+/// States of both arms while they are unknown; otherwise a late reader would take the last states for current ones.
 pub fn unknown(time_ns: u64) -> Vec<Sample> {
     let of = |side| {
         let header = Header::at(time_ns)?;
@@ -164,7 +161,7 @@ fn sample(message: &Message) -> Option<Sample> {
     Some(Sample { side, topic, data })
 }
 
-/// ROS has metres.
+/// ROS uses metres.
 fn pose(header: Header, position: &Position) -> Data {
     let [x, y, z] = position.place_mm.map(|mm| f64::from(mm) * 1e-3);
     let [qx, qy, qz, qw] = position.turn.unwrap_or([0.0, 0.0, 0.0, 1.0]).map(f64::from);

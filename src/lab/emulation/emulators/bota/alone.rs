@@ -1,7 +1,7 @@
 //! `nima emulate bota-gen0` and `bota-gen-a` on pseudo-terminals, `bota-socket` on this computer's network.
 //!
-//! Settings: `serial` (digits), `baud` (0 takes any), `boot_s`, `tcp_port`, `udp_port`, `timestamp_us` (clock at the beginning),
-//! `status` (bits that are always set).
+//! Settings: `serial` (digits), `baud` (0 accepts any), `boot_s`, `tcp_port`, `udp_port`, `timestamp_us` (clock at the
+//! beginning), `status` (bits that are always set).
 
 use std::{
     io::Result,

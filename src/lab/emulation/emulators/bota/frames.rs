@@ -1,4 +1,4 @@
-//! Frames of an emulated sensor at its own pace, with the faults that concern their meaning.
+//! Frames of an emulated sensor at its own rate, with the faults of their content.
 
 use nalgebra::Vector3;
 use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, Inertial};
@@ -6,10 +6,10 @@ use nima_devices::bota::codec::{Frame, INERTIAL_BYTES, Inertial};
 use super::{Body, Wire};
 use crate::emulators::{EmulatedFault, Peer, Turn};
 
-/// A thread that was held up makes up for at most this much, s; what is older is lost.
+/// Maximum backlog that a delayed thread makes up, s; earlier frames are lost.
 const BACKLOG_S: f64 = 0.5;
 const INVALID: u16 = 1 << 2;
-/// Readings of a block that is sent again and again, and how far a reading jumps, N.
+/// Number of readings in a repeated block, and size of a jump, N.
 const BLOCK: usize = 32;
 const JUMP_N: f32 = 1.5;
 
@@ -20,7 +20,7 @@ pub(super) struct Frames {
     status: u16,
     next_s: Option<f64>,
     frozen: Option<Frame>,
-    /// What the numbers were when a fault of the sensor began, and since then.
+    /// The numbers since the beginning of a sensor fault.
     since: Vec<Frame>,
     in_block: usize,
     made: u64,
@@ -31,7 +31,7 @@ impl Frames {
         Self { body, zero_us, status, next_s: None, frozen: None, since: Vec::new(), in_block: 0, made: 0 }
     }
 
-    /// Sends every frame that is due, its bytes as `finish` makes them.
+    /// Sends every frame that is due, with its bytes completed by `finish`.
     pub(super) fn due(&mut self, turn: &mut Turn<'_>, wire: &dyn Wire, to: Peer, finish: impl Fn(&mut [u8])) {
         let Some(period_s) = wire.period_s() else {
             self.next_s = None;
@@ -50,7 +50,6 @@ impl Frames {
         self.next_s = Some(next_s);
     }
 
-    /// When the next frame is due, s.
     pub(super) const fn next_s(&self) -> Option<f64> {
         self.next_s
     }
@@ -88,7 +87,7 @@ impl Frames {
         frame
     }
 
-    /// Faults of the sensor itself: its clock goes on.
+    /// Applies faults of the sensor itself: its clock keeps running.
     fn fail(&mut self, frame: &mut Frame, fault: EmulatedFault) {
         if !EmulatedFault::OF_SENSORS.contains(&fault) {
             self.since.clear();
@@ -103,7 +102,7 @@ impl Frames {
         match fault {
             EmulatedFault::Repeat => *frame = first,
             EmulatedFault::Block => {
-                // While the block is filled it is what the sensor reads.
+                // While the block is being filled it equals the sensor's readings.
                 *frame = self.since[self.in_block];
                 self.in_block = (self.in_block + 1) % BLOCK;
             }
@@ -117,7 +116,7 @@ impl Frames {
         frame.timestamp_us = time;
     }
 
-    /// Faults of the bytes that only the emulator can make; gives the length that remains.
+    /// Applies transmission faults that only the emulator can create; returns the remaining length.
     fn spoil(&mut self, bytes: &mut [u8; INERTIAL_BYTES], length: usize, fault: EmulatedFault) -> usize {
         self.made += 1;
         match fault {

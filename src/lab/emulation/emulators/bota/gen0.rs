@@ -1,6 +1,7 @@
-//! The first generation's firmware as far as its line shows it: start, modes, one-letter commands.
+//! The visible behaviour of the first generation's firmware: start, modes, one-letter commands.
 //!
-//! Not known of the real one, and chosen here: every command in a wrong mode and every value out of range is answered with code 1.
+//! Unknown for the real sensor and chosen here: every command in a wrong mode and every value out of range is answered
+//! with code 1.
 
 use nima_devices::bota::{
     codec::Frame,
@@ -11,7 +12,7 @@ use super::{Emulated, Wire};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
-    /// Starting; deaf until then, s.
+    /// Starting; does not receive until then, s.
     Booting(f64),
     Init,
     Config,
@@ -39,9 +40,9 @@ pub(super) struct Gen0 {
     firmware: String,
 }
 
-/// A command with parameters has no end of its own; it is whole when nothing follows for so long, s.
+/// A command with parameters has no terminator; it is complete after this much silence, s.
 const IDLE_S: f64 = 0.020;
-/// What a gauge shows per newton without the calibration, about.
+/// Raw gauge value per newton without the calibration, approximately.
 const RAW_PER_UNIT: f32 = 4321.0;
 
 impl Gen0 {
@@ -100,13 +101,13 @@ impl Gen0 {
         acknowledge(letter, good, answer);
     }
 
-    /// A command with parameters.
+    /// Handles a command with parameters.
     fn command(&mut self, answer: &mut Vec<u8>) {
         let line = String::from_utf8_lossy(&self.pending).into_owned();
         self.pending.clear();
         let Some(letter) = line.bytes().next() else { return };
         if line == "p?" {
-            // The two fields between are not known.
+            // The two fields between are unknown.
             answer.extend(format!("p,0,{},0,0,{}\r\n", self.serial, self.product).bytes());
             acknowledge(b'p', self.mode == Mode::Config, answer);
             return;
@@ -129,7 +130,7 @@ impl Gen0 {
                 }
                 Err(_) => false,
             },
-            // Binary frames with the calibration applied are all that it can do.
+            // It supports only binary frames with the calibration applied.
             (b'c', [_, calibrated, format, index]) => {
                 *calibrated > 0.5 && format.abs() < 0.5 && (0.0..=5.0).contains(index)
             }

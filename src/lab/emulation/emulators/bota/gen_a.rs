@@ -1,6 +1,7 @@
-//! The second generation's firmware as far as its lines show it: states and numbered parameters.
+//! The visible behaviour of the second generation's firmware: states and numbered parameters.
 //!
-//! Not known of the real one, and chosen here: it rests until it is told to measure, and goes on when its client has gone.
+//! Unknown for the real sensor and chosen here: it is idle until the start command, and continues after its client has
+//! disconnected.
 
 use nima_devices::bota::{
     codec::Frame,
@@ -24,11 +25,11 @@ pub(super) struct GenA {
     heard_s: f64,
 }
 
-/// A command without an end is whole when nothing follows for so long, s.
+/// A command without a terminator is complete after this much silence, s.
 const IDLE_S: f64 = 0.020;
 const COMMAND_BYTES: usize = 64;
 
-// Statuses of an answer (reference, 1.3).
+// Status codes of an answer (reference, 1.3).
 const WRONG_STATE: u32 = 1;
 const SYNTAX: u32 = 2;
 const READ_ONLY: u32 = 3;
@@ -92,7 +93,7 @@ impl GenA {
 
     fn write(&mut self, id: &str, sub: &str, value: &str) -> Result<String, u32> {
         let number = u32::from_str_radix(value, 16).map_err(|_| SYNTAX)?;
-        // Whatever cannot be read is not there to be written.
+        // A parameter that cannot be read cannot be written either.
         self.read(id, sub)?;
         let id: u8 = id.parse().map_err(|_| SYNTAX)?;
         let sub: usize = sub.parse().map_err(|_| SYNTAX)?;

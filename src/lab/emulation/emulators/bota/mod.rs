@@ -1,7 +1,9 @@
-//! Emulated sensors on real wires: pseudo-terminals, TCP and UDP, so that the manufacturer's client takes them for real ones.
+//! Emulated sensors on real interfaces: pseudo-terminals, TCP and UDP, so that the manufacturer's client accepts them
+//! as real ones.
 //!
-//! What a sensor feels comes from its [`Body`], a closure of the emulator's time. Opening the line of a first-generation sensor
-//! restarts it, as it does in reality. Line speeds are obeyed: a client with a wrong one reads garbage and is not understood.
+//! The measured values come from a [`Body`], a closure of the emulator's time. Opening the port of a first-generation
+//! sensor restarts it, as in reality. Baud rates are emulated: a client with a wrong one reads garbage and is not
+//! understood.
 
 pub(super) mod alone;
 mod frames;
@@ -22,35 +24,34 @@ use nima_devices::{
 
 use crate::emulators::Emulator;
 
-/// What the sensor feels at a time, s since the emulator began; readings of the inertial unit are used where frames have it.
+/// Returns the values that the sensor measures at a time, s since the emulator began; readings of the inertial unit are
+/// used if frames contain them.
 pub type Body = Box<dyn FnMut(f64) -> ForceReading + Send>;
 
-/// How an emulated sensor is.
+/// Properties of an emulated sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emulated {
-    /// Which generation, on which wire: a pseudo-terminal, or the network of this computer.
+    /// Generation and interface: a pseudo-terminal, or the network of this computer.
     pub transport: Transport,
-    /// Product.
     pub product: String,
-    /// Serial number, digits.
+    /// Digits.
     pub serial: String,
-    /// Firmware.
     pub firmware: String,
-    /// Line speed, bit/s; `None` takes any, as a serial device on USB does.
+    /// Baud rate, bit/s; `None` accepts any, like a serial device on USB.
     pub baud: Option<u32>,
-    /// First generation: from opening of the line until it begins, s.
+    /// First generation: time from opening the port to the start, s.
     pub boot_s: f64,
-    /// First generation: so many starts leave it without its calibration.
+    /// First generation: this many starts leave it without its calibration.
     pub raw_starts: u32,
     /// Its clock when the emulator begins, us.
     pub first_timestamp_us: u32,
     /// Status bits that are always set.
     pub status: u16,
-    /// Serial: the name of its line; a folder of its own where none is given.
+    /// Serial: the name of its port; by default in its own folder.
     pub link: Option<std::path::PathBuf>,
-    /// Socket: port for commands; 0 takes a free one.
+    /// Socket: TCP port for commands; 0 selects a free one.
     pub tcp_port: u16,
-    /// Socket: where readings go.
+    /// Socket: destination of the readings.
     pub destination: std::net::SocketAddrV4,
 }
 
@@ -74,7 +75,7 @@ impl Default for Emulated {
 }
 
 impl Emulated {
-    /// With what it feels.
+    /// Makes the emulator with a source of values.
     pub fn with(self, body: Body) -> Box<dyn Emulator> {
         let wire: Box<dyn Wire> = match self.transport {
             Transport::Gen0 => Box::new(gen0::Gen0::new(&self)),
@@ -84,23 +85,23 @@ impl Emulated {
     }
 }
 
-/// What a generation of sensors makes of the bytes that it hears.
+/// The protocol of a generation of sensors.
 trait Wire: Send {
-    /// Somebody opened the line.
+    /// Called when a client has opened the port.
     fn opened(&mut self, now_s: f64);
-    /// Takes in bytes; what it answers is added to `answer`.
+    /// Processes received bytes; appends the response to `answer`.
     fn hear(&mut self, bytes: &[u8], now_s: f64, answer: &mut Vec<u8>);
-    /// Time passes: a start comes to its end, a command without an end is taken for whole.
+    /// Called when time has passed: completes a start, or a command without a terminator.
     fn tick(&mut self, now_s: f64, answer: &mut Vec<u8>);
     /// Time between readings while it measures, s.
     fn period_s(&self) -> Option<f64>;
-    /// Frames have the inertial unit.
+    /// Whether frames contain the inertial unit.
     fn is_inertial(&self) -> bool;
-    /// Offset, status bits: what the sensor itself makes of a reading.
+    /// Applies the sensor's own offset and status bits to a reading.
     fn finish(&self, frame: &mut Frame);
 }
 
-/// A slow plausible motion for an emulator that runs alone: a tool of 0.4 kg being turned, and a slow pull.
+/// A slow, plausible motion for a standalone emulator: a tool of 0.4 kg being rotated, and a slow pull.
 pub fn slow_motion() -> Body {
     Box::new(|t_s| {
         let turn = (0.5 * (TAU * 0.10 * t_s).sin(), 0.3 * (TAU * 0.07 * t_s).cos());

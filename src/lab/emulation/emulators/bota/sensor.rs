@@ -1,7 +1,9 @@
-//! An emulated sensor on its wire: a pseudo-terminal, or commands over TCP and readings as datagrams to a fixed address.
+//! An emulated sensor on its interface: a pseudo-terminal, or commands over TCP and readings as datagrams to a fixed
+//! address.
 //!
-//! A client in the network holds the line once a command of its was answered. Until then the next one takes its place, and one that sends
-//! much and asks nothing is cut off: whatever else knocks at the port keeps no client waiting.
+//! A network client owns the sensor once one of its commands has been answered. Until then the next client replaces it,
+//! and a client that sends much data without a valid command is disconnected, so that other programs that connect to
+//! the port cannot block a client.
 
 use std::io;
 
@@ -13,16 +15,16 @@ use crate::emulators::{
     wires::{tcp_for_one, terminal, udp},
 };
 
-/// Without a command among so many bytes what a client sends is garbage.
+/// Data without a command in this many bytes are garbage.
 const GARBAGE_BYTES: usize = 4096;
 
 pub(super) struct Sensor {
     wire: Box<dyn Wire>,
     frames: Frames,
     of: Emulated,
-    /// A command of the client was answered.
+    /// Whether a command of the client has been answered.
     known: bool,
-    /// Bytes of the client since the last one that was.
+    /// Bytes of the client since its last answered command.
     unanswered: usize,
 }
 
@@ -32,12 +34,12 @@ impl Sensor {
         Self { wire, frames, of, known: false, unanswered: 0 }
     }
 
-    /// Another speed turns bytes into others.
+    /// Another baud rate changes the bytes.
     fn understands(&self, turn: &Turn<'_>) -> bool {
         turn.baud.is_none() || self.of.baud.is_none() || turn.baud == self.of.baud
     }
 
-    /// Sends an answer, which only silence keeps back.
+    /// Sends an answer, which only the fault of silence suppresses.
     fn answer(&mut self, mut answer: Vec<u8>, turn: &mut Turn<'_>) {
         if answer.is_empty() {
             return;
@@ -124,7 +126,7 @@ mod tests {
     use super::*;
     use crate::emulators::{Serving, bota::slow_motion};
 
-    /// Whoever is served gets its answer within milliseconds; this is for machines that are busy with others.
+    /// An active client is answered within milliseconds; this allows for busy machines.
     const LONG: Duration = Duration::from_secs(20);
 
     fn sensor() -> Serving {
@@ -138,7 +140,7 @@ mod tests {
         stream
     }
 
-    /// Asks for the state, and waits for the answer.
+    /// Requests the state and waits for the answer.
     fn ask(client: &mut TcpStream) -> std::io::Result<String> {
         client.write_all(b"rh,1,2,\n")?;
         let mut buffer = [0; 64];
@@ -154,7 +156,7 @@ mod tests {
             garbage.set_nonblocking(true).unwrap();
             let mut random = fastrand::Rng::with_seed(3);
             let noise: Vec<u8> = (0..65536).map(|_| random.u8(..)).collect();
-            // As much as the connection takes, and it stays open.
+            // Sends as much as the connection accepts, and keeps it open.
             let mut sent = 0;
             let stopped = loop {
                 match garbage.write(&noise) {

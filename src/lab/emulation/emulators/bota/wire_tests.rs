@@ -14,7 +14,7 @@ use crate::emulators::{
     bota::{Emulated, slow_motion},
 };
 
-/// Short, so that tests are; the emulated sensors start within it.
+/// Short, to keep tests short; the emulated sensors start within it.
 const TIMEOUT: Timeouts = Timeouts {
     boot: Duration::from_millis(300),
     answer: Duration::from_millis(100),
@@ -26,7 +26,7 @@ fn free_udp_port() -> u16 {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
-/// A sensor that starts soon, on a clock that is about to begin again.
+/// A sensor that starts quickly, on a clock that is about to wrap around.
 fn emulated() -> Emulated {
     Emulated {
         boot_s: 0.02,
@@ -76,7 +76,7 @@ fn sensors_on_real_wires_are_read_whole_and_without_loss() {
             assert!(times_s.windows(2).all(|pair| pair[1] > pair[0]), "{transport:?}");
             let span_s = times_s[times_s.len() - 1] - times_s[0];
             println!("{transport:?}: {} readings in {span_s:.3} s of the sensor", health.readings);
-            // More may have come with the first of them, which is not seen here.
+            // More frames may have arrived together with the first, which does not show here.
             let expected = span_s * product_hz + 1.0;
             assert!(
                 (0.0..=20.0).contains(&(health.readings as f64 - expected).round()),
@@ -99,7 +99,8 @@ fn until(slot: &mut Slot<Driver>, zero: Instant, mut done: impl FnMut(&Health, b
     None
 }
 
-/// Every fault loses the sensor for `loss`, or is counted by `counter`; when it is taken back there are readings again.
+/// For every fault, checks that the sensor is lost with `loss` or that `counter` counts; after the fault is removed
+/// there must be readings again.
 fn faults(transport: Transport, faults: &[(EmulatedFault, Expected)]) {
     let (serving, settings) = serve(transport, emulated());
     let mut slot = Slot::start("bota", move || Driver::open_within(&settings, TIMEOUT)).unwrap();
@@ -279,7 +280,7 @@ fn troubles_of_the_network_are_told_apart() {
 fn readings_are_taken_at_one_address_and_from_the_sensor_alone() {
     let destination = SocketAddrV4::new(Ipv4Addr::LOCALHOST, free_udp_port());
     let (_serving, settings) = serve(Transport::Socket, Emulated { destination, ..emulated() });
-    // Whatever else runs on this computer, some try succeeds.
+    // One of several attempts succeeds, even on a busy computer.
     let long = Timeouts { answer: Duration::from_secs(5), stream: Duration::from_secs(5), ..TIMEOUT };
     let mut driver = (0..5).find_map(|_| Driver::open_within(&settings, long).ok()).expect("opened");
     #[cfg(target_os = "linux")]

@@ -1,10 +1,11 @@
-//! Emulated servos on one bus: every instruction of Protocol 2.0, at the pace of the line.
+//! Emulated servos on one bus: every instruction of Protocol 2.0, at the baud rate of the bus.
 //!
-//! [`Bus::receive`] takes what a client sent, [`Bus::send`] gives what leaves by now. What the world does to the shafts comes from a closure, [`Body`], called at every instruction and every
-//! millisecond between them; what commands do to them is told to it with the same call.
+//! [`Bus::receive`] takes data of a client, [`Bus::send`] returns the data to send by now. The forces on the shafts
+//! come from a closure, [`Body`], called at every instruction and every millisecond between them; the same call passes
+//! it the effects of commands.
 //!
-//! Inferred, because the e-manual is silent: servos after a missing one do not answer a sync read; a failed part of a fast
-//! read answers zeros with its error.
+//! Inferred, because the e-manual does not say: servos after a missing one do not answer a sync read; a failed part of
+//! a fast read returns zeros with its error.
 
 pub(super) mod alone;
 mod motor;
@@ -25,25 +26,22 @@ use servo::Servo;
 
 use crate::emulators::{EmulatedFault, Emulator};
 
-/// Longest instruction that an emulated servo takes.
+/// Maximum instruction that an emulated servo accepts, bytes.
 const LONGEST: usize = 2048;
-/// Between two looks at the world while no instruction comes, s.
+/// Interval between updates of the world while no instruction arrives, s.
 const ADVANCE_S: f64 = 0.001;
-/// A packet that pauses for longer is given up, s.
+/// A packet that pauses for longer is discarded, s.
 const PAUSE_S: f64 = 0.050;
 
-/// A servo's shaft, as the world sees it: before offset and sign.
+/// A servo's shaft as seen by the world: before offset and sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaft {
-    /// Angle, rad.
     pub angle_rad: f64,
-    /// Speed, rad/s.
     pub velocity_rad_s: f64,
-    /// The motor is driven; else it is turned by the load alone.
+    /// Whether the motor is driven; otherwise only the load moves it.
     pub torque_on: bool,
 }
 
-/// What the world does to a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surroundings {
     /// Torque on the shaft, Nm.
@@ -54,21 +52,19 @@ pub struct Surroundings {
     pub temperature_c: f64,
 }
 
-/// The world: called with the time, s, which servo, and its shaft.
+/// The world: called with the time, s, the index of the servo, and its shaft.
 pub type Body = Box<dyn FnMut(f64, usize, &Shaft) -> Surroundings + Send>;
 
-/// How emulated servos are.
 #[derive(Clone, Debug)]
 pub struct Emulated {
     /// Ids on the bus.
     pub ids: Vec<u8>,
-    /// Model number of all of them.
     pub model: u16,
-    /// Line speed, bit/s.
+    /// Baud rate, bit/s.
     pub baud: u32,
-    /// The firmware knows the fast reads.
+    /// Whether the firmware supports the fast reads.
     pub fast: bool,
-    /// The name of its line; a folder of its own where none is given.
+    /// The name of its port; by default in its own folder.
     pub link: Option<PathBuf>,
 }
 
@@ -79,16 +75,15 @@ impl Default for Emulated {
 }
 
 impl Emulated {
-    /// On a bus; without a body the shafts sway slowly.
+    /// Starts the servos on a bus; without a body the shafts sway slowly.
     ///
     /// # Errors
-    /// When model or line speed is none that there is.
+    /// If the model or the baud rate does not exist.
     pub fn with(&self, body: Option<Body>) -> io::Result<Box<dyn Emulator>> {
         Ok(Box::new(Bus::new(self, body)?))
     }
 }
 
-/// The bus.
 pub struct Bus {
     servos: Vec<Servo>,
     body: Body,
@@ -109,7 +104,7 @@ impl std::fmt::Debug for Bus {
     }
 }
 
-/// The servos without a world: a soft hand sways their shafts slowly, which they hold against once the torque is on.
+/// A default body: a soft hand sways the shafts slowly, which resist once the torque is on.
 pub fn swaying(supply_v: f64) -> Body {
     Box::new(move |now_s, index, shaft| {
         let there_rad = 0.4 * (0.6 * now_s + index as f64).sin();
@@ -119,10 +114,10 @@ pub fn swaying(supply_v: f64) -> Body {
 }
 
 impl Bus {
-    /// New from the factory, but for ids and line speed. Without a body the shafts sway slowly.
+    /// New from the factory, except for ids and baud rate. Without a body the shafts sway slowly.
     ///
     /// # Errors
-    /// When model or line speed is none that there is.
+    /// If the model or the baud rate does not exist.
     pub fn new(settings: &Emulated, body: Option<Body>) -> io::Result<Self> {
         let baud = BAUDS.iter().position(|baud| *baud == settings.baud);
         let (Some(model), Some(baud)) = (Model::numbered(settings.model), baud) else {
@@ -144,7 +139,7 @@ impl Bus {
         })
     }
 
-    /// Line speed that the servos have now, bit/s.
+    /// Current baud rate of the servos, bit/s.
     pub fn baud(&self) -> u32 {
         let code = self.servos.first().map_or(1, |servo| servo.get(table::BAUD));
         BAUDS[code as usize % BAUDS.len()]
@@ -157,19 +152,18 @@ impl Bus {
         }
     }
 
-    /// The shaft of a servo.
     pub fn shaft(&self, index: usize) -> Option<Shaft> {
         self.servos.get(index).map(Servo::shaft)
     }
 
-    /// Cuts a servo's power for a moment: it starts again by itself.
+    /// Interrupts a servo's power for a moment; it restarts by itself.
     pub fn interrupt(&mut self, index: usize, now_s: f64) {
         if let Some(servo) = self.servos.get_mut(index) {
             servo.reboot(now_s);
         }
     }
 
-    /// Takes what a client sent at `now_s`.
+    /// Processes data of a client at `now_s`.
     pub fn receive(&mut self, now_s: f64, bytes: &[u8]) {
         if self.incoming.is_midway() && now_s - self.heard_s > PAUSE_S {
             self.incoming.reset();
@@ -187,14 +181,14 @@ impl Bus {
                 let wire_bytes = packet.wire_bytes;
                 let body = packet.body.to_vec();
                 self.advance(now_s);
-                // The answer begins when the question is over, and after what is still on the line.
+                // The answer begins after the request, and after data still being sent.
                 self.free_s = self.free_s.max(now_s) + wire_bytes as f64 * 10.0 / f64::from(self.baud());
                 self.obey(id, instruction, &body, now_s);
             }
         }
     }
 
-    /// Gives what leaves by `now_s`; of the faults, those of meaning are obeyed.
+    /// Sends the data due by `now_s`; applies the faults of the content.
     pub fn send(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8])) {
         if fault == EmulatedFault::DeviceFault && self.fault != fault {
             self.fail(0, HardwareError(HardwareError::OVERLOAD));
@@ -222,7 +216,6 @@ impl Bus {
         }
     }
 
-    /// When the next answer is due, s.
     pub fn next_s(&self) -> Option<f64> {
         self.queue.front().map(|(due_s, _)| *due_s)
     }
@@ -276,12 +269,12 @@ impl Bus {
     fn write_silently(&mut self, id: u8, address: u16, data: &[u8], now_s: f64) {
         let meant = |servo: &&mut Servo| (servo.id() == id || servo.is_shadow_of(id)) && servo.is_up(now_s);
         for servo in self.servos.iter_mut().filter(meant) {
-            // Nobody is told, as on the real bus.
+            // Not reported, as on the real bus.
             let _silent: Result<(), Refusal> = servo.write(address, data, now_s);
         }
     }
 
-    /// An instruction for one servo, or for all that are there.
+    /// Executes an instruction for one servo, or for all on the bus.
     fn obey_one(&mut self, id: u8, instruction: &Instruction<'_>, now_s: f64) {
         let all = id == BROADCAST;
         for index in 0..self.servos.len() {
@@ -300,14 +293,14 @@ impl Bus {
             }
             let mut data = Vec::new();
             let (level, result) = Self::one(servo, instruction, all, now_s, &mut data);
-            // Everyone answers to a ping of all; nobody to anything else.
+            // All servos answer a broadcast ping; none answers any other broadcast.
             if own || *instruction == Instruction::Ping {
                 self.answer(index, level, result, &data);
             }
         }
     }
 
-    /// What a servo does with an instruction: from which status return level on it answers, and what.
+    /// Executes an instruction on a servo; returns the status return level from which it answers, and the answer.
     fn one(
         servo: &mut Servo,
         instruction: &Instruction<'_>,
@@ -368,7 +361,7 @@ impl Bus {
         }
         let mut last = None;
         for (id, address, count) in asked {
-            // Each waits for the one before; after a missing one nobody answers.
+            // Each servo waits for the previous one; after a missing servo none answers.
             let Some(index) = self.index_of(*id, now_s) else { break };
             let mut data = Vec::new();
             let result = self.servos[index].read(*address, *count, &mut data);
@@ -386,7 +379,7 @@ impl Bus {
         }
     }
 
-    /// Puts the packet in `out` on the line when its time has come.
+    /// Sends the packet in `out` when its time has come.
     fn enqueue(&mut self, index: usize) {
         let delay_s = self.servos[index].get(table::RETURN_DELAY) as f64 * 2e-6;
         let wire_s = self.out.bytes().len() as f64 * 10.0 / f64::from(self.baud());

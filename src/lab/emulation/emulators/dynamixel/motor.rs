@@ -1,8 +1,9 @@
-//! A geared motor under the servo's own control: profile, gains and limits have their effect.
+//! A geared motor under the servo's own control, with working profile, gains and limits.
 //!
-//! Voltage makes current against resistance and back EMF, current makes torque, torque moves an inertia with viscous friction
-//! and the load of the world. Resistance, torque constant and speed follow from the stall and no-load figures in the e-manual;
-//! inertia and friction are guesses of the right size. Gains are scaled as the e-manual says (P/128, I/65536, D/16, FF/4).
+//! Voltage drives current against resistance and back EMF, current makes torque, torque moves an inertia with viscous
+//! friction and the load of the world. Resistance, torque constant and speed follow from the stall and no-load values
+//! in the e-manual; inertia and friction are guesses of a realistic magnitude. Gains are scaled as in the e-manual
+//! (P/128, I/65536, D/16, FF/4).
 
 use nima_devices::dynamixel::table::{
     ACCELERATION_UNIT_RAD_S2, TICKS_PER_TURN, VELOCITY_UNIT_RAD_S, rad_from_ticks, ticks_from_rad,
@@ -10,10 +11,9 @@ use nima_devices::dynamixel::table::{
 
 /// Step of the control loop and of the integration, s.
 pub(super) const STEP_S: f64 = 1e-3;
-/// All of the PWM.
+/// Full PWM.
 const PWM_FULL: f64 = 885.0;
 
-/// Constants of the motor at the shaft.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plant {
     resistance_ohm: f64,
@@ -42,7 +42,7 @@ impl Plant {
     };
 }
 
-/// What the servo's registers ask of the motor; positions in the shaft's own ticks, before sign and offset.
+/// Register values that control the motor; positions in the shaft's own ticks, before sign and offset.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drive {
     pub(super) torque_on: bool,
@@ -62,14 +62,13 @@ pub(super) struct Drive {
     pub(super) load_nm: f64,
 }
 
-/// State of the motor.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Motor {
     pub(super) angle_rad: f64,
     pub(super) velocity_rad_s: f64,
     pub(super) current_a: f64,
     pub(super) pwm: f64,
-    /// Of the profile, rad and rad/s.
+    /// Set point of the profile, rad and rad/s.
     pub(super) wanted_rad: f64,
     pub(super) wanted_rad_s: f64,
     wanted_rad_s2: f64,
@@ -78,7 +77,7 @@ pub(super) struct Motor {
 }
 
 impl Motor {
-    /// The torque comes on or goes off: the profile begins where the shaft is.
+    /// Called when the torque is switched: the profile begins at the current position of the shaft.
     pub(super) const fn restart(&mut self) {
         self.wanted_rad = self.angle_rad;
         self.wanted_rad_s = 0.0;
@@ -87,7 +86,6 @@ impl Motor {
         self.error_before = 0.0;
     }
 
-    /// One step of control and motion.
     pub(super) fn step(&mut self, drive: &Drive, plant: &Plant) {
         let volts = if drive.torque_on { self.control(drive, plant) } else { None };
         let Plant { resistance_ohm, torque_nm_per_a, back_emf_v_s_per_rad, inertia_kg_m2, friction_nm_s_per_rad } =
@@ -106,7 +104,7 @@ impl Motor {
             self.turn(torque_nm, friction_nm_s_per_rad, inertia_kg_m2);
             self.current_a = limit_a.copysign(free_a);
         } else {
-            // The back EMF brakes like friction does; taken at the end of the step it cannot make the step unstable.
+            // The back EMF acts like friction; evaluated at the end of the step it keeps the step stable.
             let braking = torque_nm_per_a * back_emf_v_s_per_rad / resistance_ohm;
             let torque_nm = torque_nm_per_a * volts / resistance_ohm + drive.load_nm;
             self.turn(torque_nm, friction_nm_s_per_rad + braking, inertia_kg_m2);
@@ -120,7 +118,7 @@ impl Motor {
         self.angle_rad += STEP_S * self.velocity_rad_s;
     }
 
-    /// Voltage that the servo puts on the motor.
+    /// Returns the voltage on the motor.
     fn control(&mut self, drive: &Drive, plant: &Plant) -> Option<f64> {
         let limit = drive.pwm_limit.min(if drive.mode == 16 { PWM_FULL } else { drive.goal_pwm.abs() });
         let pwm = match drive.mode {
@@ -163,7 +161,7 @@ impl Motor {
         p / 128.0 * error + i / 65_536.0 * self.integral + d / 16.0 * slope + ahead
     }
 
-    /// A trapezoid of speed towards the goal; without limits, a jump.
+    /// A trapezoidal speed profile towards the goal; without limits, a jump.
     fn follow_profile(&mut self, drive: &Drive) {
         let goal_rad = rad_from_ticks(drive.goal_ticks);
         let fastest = drive.profile_velocity * VELOCITY_UNIT_RAD_S;
@@ -178,7 +176,7 @@ impl Motor {
         let before = self.wanted_rad_s;
         let mut speed = fastest.min(rest.abs() / STEP_S);
         if acceleration > 0.0 {
-            // So that it can still stop: half a step is kept back for the steps' own length.
+            // Keeps the ability to stop in time; half a step is reserved for the step length.
             speed = speed.min((2.0 * acceleration * (rest.abs() - 0.5 * STEP_S * before.abs()).max(0.0)).sqrt());
             let most = acceleration * STEP_S;
             let target = speed.copysign(rest);
@@ -194,7 +192,7 @@ impl Motor {
         self.wanted_rad += STEP_S * self.wanted_rad_s;
     }
 
-    /// Where the shaft is, in its own ticks.
+    /// Returns the position of the shaft, in its own ticks.
     pub(super) fn ticks(&self) -> f64 {
         ticks_from_rad(self.angle_rad)
     }

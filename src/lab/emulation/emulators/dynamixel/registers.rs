@@ -1,13 +1,11 @@
-//! The emulated control table: which registers there are, how they may be written, what the factory puts there.
+//! The emulated control table: registers, access rules, and factory values.
 
 use std::ops::RangeInclusive;
 
 use nima_devices::dynamixel::table::{self, Model, Register};
 
-/// How a register may be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Access {
-    /// Never.
     Read,
     /// While the torque is off; kept without power.
     Eeprom,
@@ -15,7 +13,6 @@ pub(super) enum Access {
     Ram,
 }
 
-/// One register's rules.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rule {
     pub(super) register: Register,
@@ -25,7 +22,6 @@ pub(super) struct Rule {
     pub(super) factory: i64,
 }
 
-/// Bytes of the whole table.
 pub(super) const TABLE_BYTES: usize = 662;
 
 const fn rule(register: Register, access: Access, range: (i64, i64), factory: i64) -> Rule {
@@ -45,7 +41,7 @@ const PROFILE: (i64, i64) = (0, 32_767);
 
 use Access::{Eeprom, Ram, Read};
 
-/// All but the indirect registers; the factory's values are those of the XM430-W350.
+/// All except the indirect registers; factory values of the XM430-W350.
 const RULES: [Rule; 52] = [
     rule(table::MODEL, Read, U16, 1020),
     rule(at(2, 4), Read, I32, 0),
@@ -100,10 +96,10 @@ const RULES: [Rule; 52] = [
     rule(table::VOLTAGE, Read, U16, 120),
     rule(table::TEMPERATURE, Read, (0, 255), 30),
 ];
-/// 1 while a backup of the control table is kept.
+/// 1 while a backup of the control table exists.
 pub(super) const BACKUP_READY: Rule = rule(at(147, 1), Read, (0, 1), 0);
 
-/// A run of indirect registers: pointers of two bytes each, and the bytes that they stand for.
+/// A range of indirect registers: pointers of two bytes each, and the bytes that they refer to.
 #[derive(Clone, Copy, Debug)]
 struct Indirect {
     pointers: u16,
@@ -119,7 +115,7 @@ const fn indirect(model: &Model) -> &'static [Indirect] {
     if model.is_small() { &SMALL } else { &LARGE }
 }
 
-/// Where the pointer to indirect data at `address` stands, if that is what it is.
+/// Returns the position of the pointer for indirect data at `address`, if it is indirect.
 pub(super) fn pointer_of(model: &Model, address: u16) -> Option<u16> {
     let block = indirect(model).iter().find(|block| (block.data..block.data + block.count).contains(&address))?;
     Some(block.pointers + 2 * (address - block.data))
@@ -149,7 +145,7 @@ pub(super) fn rules(model: &'static Model) -> impl Iterator<Item = Rule> {
     (0..TABLE_BYTES as u16).filter_map(|address| rule_at(model, address))
 }
 
-/// What the models have differently.
+/// Applies the differences between models.
 fn of_model(mut rule: Rule, model: &Model) -> Rule {
     let register = rule.register;
     if register == table::MODEL {

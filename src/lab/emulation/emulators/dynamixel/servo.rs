@@ -17,7 +17,6 @@ const BOOT_S: f64 = 0.2;
 
 const GOALS: [Register; 4] = [table::GOAL_PWM, table::GOAL_CURRENT, table::GOAL_VELOCITY, table::GOAL_POSITION];
 
-/// One servo.
 #[derive(Debug)]
 pub(super) struct Servo {
     pub(super) model: &'static Model,
@@ -29,9 +28,9 @@ pub(super) struct Servo {
     booted_s: f64,
     heard_s: f64,
     stalled_s: f64,
-    /// Its measurements stand still.
+    /// Whether its measurements are frozen.
     pub(super) frozen: bool,
-    /// Its position is not possible.
+    /// Whether it reports an impossible position.
     pub(super) impossible: bool,
 }
 
@@ -62,7 +61,7 @@ impl Servo {
         }
     }
 
-    /// Value of a register, with sign.
+    /// Returns the value of a register, with sign.
     pub(super) fn get(&self, register: Register) -> i64 {
         let at = usize::from(register.address);
         match register.bytes {
@@ -74,7 +73,7 @@ impl Servo {
         }
     }
 
-    /// Sets a register without any rule.
+    /// Sets a register without checking any rule.
     pub(super) fn set(&mut self, register: Register, value: i64) {
         let at = usize::from(register.address);
         self.table[at..at + usize::from(register.bytes)]
@@ -85,23 +84,23 @@ impl Servo {
         self.get(table::ID) as u8
     }
 
-    /// It writes silently what is written to this id.
+    /// Whether it silently executes writes to this id.
     pub(super) fn is_shadow_of(&self, id: u8) -> bool {
         let shadow = self.get(table::SHADOW_ID);
         shadow <= 252 && shadow == i64::from(id)
     }
 
-    /// The alert bit, while there is a hardware error.
+    /// Returns the alert bit, set while there is a hardware error.
     pub(super) fn alert(&self) -> u8 {
         if self.get(table::HARDWARE_ERROR) == 0 { 0 } else { ALERT }
     }
 
-    /// It hears; a servo that starts does not.
+    /// Whether it receives; a servo that is starting does not.
     pub(super) fn is_up(&self, now_s: f64) -> bool {
         now_s >= self.booted_s + BOOT_S
     }
 
-    /// Some instruction went over the bus.
+    /// Notes that an instruction was on the bus.
     pub(super) const fn hear(&mut self, now_s: f64) {
         self.heard_s = now_s;
     }
@@ -110,7 +109,7 @@ impl Servo {
         self.get(table::TORQUE_ENABLE) != 0
     }
 
-    /// Where a byte really stands: indirect data is elsewhere.
+    /// Returns the actual position of a byte: indirect data are stored elsewhere.
     fn place(&self, address: u16) -> usize {
         let target = registers::pointer_of(self.model, address)
             .map(|pointer| self.get(Register { address: pointer, bytes: 2 }) as u16);
@@ -127,7 +126,7 @@ impl Servo {
         Ok(())
     }
 
-    /// Writes whole registers: all of them, or none and why.
+    /// Writes whole registers: either all of them, or none with the reason.
     pub(super) fn write(&mut self, address: u16, data: &[u8], now_s: f64) -> Result<(), Refusal> {
         if data.is_empty() || usize::from(address) + data.len() > TABLE_BYTES {
             return Err(if data.is_empty() { Refusal::Length } else { Refusal::Access });
@@ -164,7 +163,7 @@ impl Servo {
         if locked || no_mode || !(rule.low..=rule.high).contains(&value) {
             return Err(Refusal::Range);
         }
-        // Shut down: only a reboot lets the torque on again.
+        // After a shutdown only a reboot allows the torque again.
         let shut_down = self.get(table::HARDWARE_ERROR) & self.get(table::SHUTDOWN) != 0;
         if register == table::TORQUE_ENABLE && value != 0 && shut_down {
             return Err(Refusal::Access);
@@ -181,7 +180,7 @@ impl Servo {
         if (limits.0..=limits.1).contains(&value) { Ok(()) } else { Err(Refusal::Limit) }
     }
 
-    /// Writes a checked value, with all that follows from it.
+    /// Writes a checked value and applies its effects.
     fn obey(&mut self, register: Register, value: i64, now_s: f64) {
         let before = self.get(register);
         self.set(register, value);
@@ -211,7 +210,7 @@ impl Servo {
         }
     }
 
-    /// Keeps a write for the action instruction.
+    /// Stores a write for the action instruction.
     pub(super) fn register(&mut self, address: u16, data: &[u8]) -> Result<(), Refusal> {
         let known = registers::rule_at(self.model, self.place(address.min(TABLE_BYTES as u16 - 1)) as u16);
         if known.is_none_or(|rule| rule.access == Access::Read) {
@@ -222,14 +221,14 @@ impl Servo {
         Ok(())
     }
 
-    /// Does what was kept.
+    /// Executes the stored write.
     pub(super) fn act(&mut self, now_s: f64) -> Result<(), Refusal> {
         let Some((address, data)) = self.registered.take() else { return Err(Refusal::Failed) };
         self.set(table::REGISTERED, 0);
         self.write(address, &data, now_s)
     }
 
-    /// Starts again: the RAM is as from the factory, the shutdown is over, the turns are forgotten.
+    /// Restarts: the RAM has its factory values, the shutdown is over, the turns are forgotten.
     pub(super) fn reboot(&mut self, now_s: f64) {
         self.set_factory(|access| access != Access::Eeprom);
         self.set(table::GOAL_CURRENT, self.get(table::CURRENT_LIMIT));
@@ -276,7 +275,7 @@ impl Servo {
         Ok(())
     }
 
-    /// Latches a hardware error; the torque goes off where the shutdown register says so.
+    /// Latches a hardware error; switches the torque off if the shutdown register says so.
     pub(super) fn fail(&mut self, error: HardwareError) {
         let errors = self.get(table::HARDWARE_ERROR) | i64::from(error.0);
         self.set(table::HARDWARE_ERROR, errors);

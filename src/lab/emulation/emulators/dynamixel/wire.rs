@@ -5,7 +5,7 @@ use std::io;
 use super::Bus;
 use crate::emulators::{Emulator, End, Peer, Turn, wires::terminal};
 
-/// A waiting thread wakes so much late, s; an answer is punctual.
+/// A waiting thread wakes up this late, s; answers are punctual nevertheless.
 const WAKE_S: f64 = 50e-6;
 
 impl Emulator for Bus {
@@ -13,7 +13,7 @@ impl Emulator for Bus {
         Ok(vec![terminal(self.link.as_deref(), "bus", Some(self.baud()))?])
     }
 
-    /// Clients whose line speed is not the servos' are not understood.
+    /// Data of a client with another baud rate are ignored.
     fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
         if turn.baud == Some(self.baud()) {
             self.receive(turn.now_s, bytes);

@@ -1,8 +1,9 @@
-//! `nima emulate endoscope`: a picture of a scene whose hands do their task in the air.
+//! `nima emulate endoscope`: an image of a scene whose hands perform their task in the air.
 //!
-//! Settings: `port`, `scene` (a name or a file), `rate_hz`, `k1` (radial distortion), `width` and `height` (px), `quality` (of the JPEGs),
-//! `baseline_m` (of a second lens), `pipe` (a file or named pipe that also gets the pictures: H.264 if it ends in `.h264`, else JPEGs); `board`
-//! (inner corners, as `9x6`) and `square_mm` show a board for the calibration in place of the scene.
+//! Settings: `port`, `scene` (a name or a file), `rate_hz`, `k1` (radial distortion), `width` and `height` (px),
+//! `quality` (of the JPEGs), `baseline_m` (of a second lens), `pipe` (a file or named pipe that also gets the images:
+//! H.264 if it ends in `.h264`, else JPEGs); `board` (inner corners, as `9x6`) and `square_mm` show a calibration board
+//! instead of the scene.
 
 use std::io::{Error, ErrorKind, Result};
 
@@ -18,11 +19,11 @@ use nima_simulation::{
 use super::{Body, Emulated, Instrument, held};
 use crate::emulators::{Emulator, Settings, alone::unusable};
 
-/// Where clients find it if nobody says another port.
+/// Default port.
 const PORT: u16 = 47_150;
 /// Side of a square of a board, mm.
 const SQUARE_MM: f64 = 10.0;
-/// Step of the hands, s, and what is made up for after a pause.
+/// Step of the hands, s, and maximum time made up after a pause.
 const STEP_S: f64 = 1e-3;
 const CATCH_UP_S: f64 = 0.5;
 const SIDES_PX: std::ops::RangeInclusive<usize> = 64..=4096;
@@ -37,7 +38,7 @@ pub(in crate::emulators) fn endoscope(settings: &Settings) -> Result<Box<dyn Emu
     if let Some(side) = camera.size_px.iter().find(|side| !SIDES_PX.contains(side)) {
         return Err(unusable("width or height", side, "give 64 to 4096"));
     }
-    // The same field at any size.
+    // The same field of view at any size.
     camera.focal_px *= camera.size_px[1] as f64 / height as f64;
     if !DISTORTION.contains(camera.k1) {
         return Err(unusable("k1", camera.k1, &format!("give {DISTORTION}")));
@@ -67,7 +68,7 @@ pub(in crate::emulators) fn endoscope(settings: &Settings) -> Result<Box<dyn Emu
     Ok(emulated.with(&scene, in_the_air(&scene)))
 }
 
-/// The board that is to be shown, if one is.
+/// Returns the board to be shown, if any.
 fn board(settings: &Settings) -> Result<Option<Board>> {
     let square_mm = settings.get_or("square_mm", SQUARE_MM)?;
     let Some(named) = settings.get::<String>("board")? else { return Ok(None) };
@@ -75,7 +76,7 @@ fn board(settings: &Settings) -> Result<Option<Board>> {
     made.map(Some).map_err(|error| unusable("board", &named, &error.to_string()))
 }
 
-/// The hands of a scene do their task as if nothing were there to press.
+/// The hands of a scene perform their task without contact.
 pub(super) fn in_the_air(scene: &Scene) -> Body {
     let sides: Vec<Scene> = Side::ALL.into_iter().filter_map(|side| scene.of_side(side)).collect();
     let mut hands: Vec<Hand> = sides.iter().map(Hand::new).collect();

@@ -1,20 +1,21 @@
-//! A checkerboard before the lens, as a person holds it while a camera is calibrated.
+//! A checkerboard in front of the lens, held by a person during the camera calibration.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector2};
 use nima_endoscope::{Board, Lens, board::Portrait};
 
-/// The board's place before the lens at a time, s since the emulator began.
+/// Returns the pose of the board in front of the lens at a time, s since the emulator began.
 pub type Hands = Box<dyn FnMut(f64) -> Isometry3<f64> + Send>;
 
-/// How long a pose is held, and how long the way to the next one takes, s.
+/// Duration of holding a pose, and of the movement to the next one, s.
 const HELD_S: f64 = 1.8;
 const WAY_S: f64 = 0.4;
-/// Share of the picture's width that the board takes, and free space around its corners, px.
+/// Fraction of the image width that the board covers, and margin around its corners, px.
 const WIDE: f64 = 0.4;
 const FREE_PX: f64 = 16.0;
-/// Where a barrel turns back on itself squares are squeezed to nothing: the board stays within this share of the tangent there.
+/// Barrel distortion compresses squares to nothing where it folds back: the board stays within this fraction of the
+/// tangent there.
 const SQUEEZED: f64 = 0.8;
-/// Where the middle of the board is seen, -1 to 1 across and down.
+/// Positions of the middle of the board in the image, -1 to 1 horizontally and vertically.
 const PLACES: [[f64; 2]; 9] = [
     [0.0, 0.0],
     [-0.62, -0.6],
@@ -26,14 +27,14 @@ const PLACES: [[f64; 2]; 9] = [
     [0.0, 0.6],
     [-0.62, 0.0],
 ];
-/// Its tilt about the level and the upright axis, and its turn, degrees.
+/// Its tilt about the horizontal and the vertical axis, and its rotation, degrees.
 const TURNS_DEG: [[f64; 3]; 5] =
     [[0.0, 0.0, 4.0], [26.0, 0.0, -6.0], [-26.0, 0.0, 8.0], [0.0, 26.0, 0.0], [0.0, -26.0, -10.0]];
 const POSES: usize = 20;
-/// Noise of the sensor, of 255: without it every picture of a board that is held would be the same, as of a frozen camera.
+/// Noise of the sensor, of 255: without it every image of a still board would be equal, like that of a frozen camera.
 const NOISE: f32 = 2.0;
 
-/// A person who holds the board still at one place after the other, over the whole picture, and tilts it each way.
+/// A person who holds the board at one position after the other, over the whole image, and tilts it in every direction.
 pub fn held(board: Board, lens: &Lens) -> Hands {
     let poses: Vec<_> = (0..POSES).map(|k| pose(&board, lens, k)).collect();
     Box::new(move |now_s| {
@@ -44,7 +45,7 @@ pub fn held(board: Board, lens: &Lens) -> Hands {
     })
 }
 
-/// A pose of the list, as near to its place as the whole board can be seen.
+/// A pose of the list, as close to its position as the whole board is visible.
 fn pose(board: &Board, lens: &Lens, k: usize) -> Isometry3<f64> {
     let [width, height] = lens.size_px.map(|side| side as f64);
     let side_m = board.corners()[0] as f64 * board.square_m();
@@ -72,7 +73,7 @@ fn pose(board: &Board, lens: &Lens, k: usize) -> Isometry3<f64> {
     shares.filter_map(at).find(is_whole).unwrap_or(far)
 }
 
-/// Draws the board in pictures of three bytes a pixel.
+/// Draws the board into images with three bytes per pixel.
 pub(super) struct Drawn {
     board: Board,
     portrait: Portrait,
@@ -90,7 +91,7 @@ impl Drawn {
     pub(super) fn draw(&mut self, camera_from_board: &Isometry3<f64>) -> &mut [u8] {
         let greys = self.portrait.draw(&self.board, camera_from_board);
         for (pixel, grey) in self.picture.chunks_exact_mut(3).zip(greys) {
-            // Numerical Recipes' quick generator: it need not be good.
+            // Numerical Recipes' quick generator is good enough here.
             self.noise = self.noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let noise = ((self.noise >> 16) as f32 / 65_536.0 - 0.5) * 2.0 * NOISE;
             pixel.fill((grey + noise).clamp(0.0, 255.0) as u8);

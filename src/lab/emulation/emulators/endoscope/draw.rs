@@ -1,4 +1,5 @@
-//! Draws the scene through the lens: the ground once, then in each picture the instruments over it. Simple, on one processor, without a display.
+//! Draws the scene through the lens: the ground once, then the instruments over it in each image. Simple, on one
+//! processor, without a display.
 
 use nalgebra::{Vector2, Vector3};
 use nima_endoscope::Camera;
@@ -15,28 +16,28 @@ const AROUND: Colour = [52.0, 30.0, 32.0];
 const BEYOND_THE_LENS: [u8; 3] = [4, 4, 5];
 const STEEL: Colour = [176.0, 184.0, 194.0];
 const SHAFT: Colour = [98.0, 106.0, 118.0];
-/// The mark at the tip: no tissue has its colour.
+/// The mark at the tip, in a colour that tissue never has.
 pub(super) const MARK: [u8; 3] = [0, 230, 70];
 /// Radius of the mark, of the shaft, and of a target's ring, m.
 const MARK_M: f64 = 0.001_2;
 const SHAFT_M: f64 = 0.002_5;
 const RING_M: [f64; 2] = [0.005_5, 0.000_8];
-/// Part of the instrument behind the tip that is bare steel, m.
+/// Length of bare steel behind the tip, m.
 const STEEL_M: f64 = 0.012;
-/// Width of the shadow under a tip, m, and height above the tissue at which it has gone, m.
+/// Width of the shadow under a tip, m, and height above the tissue at which it disappears, m.
 const SHADOW_M: f64 = 0.006;
 const SHADOW_HEIGHT_M: f64 = 0.03;
 /// Distance at which the light of the lens has its full strength, m.
 const LIT_M: f64 = 0.11;
-/// A shaft is drawn in so many pieces, m, and followed this far, m.
+/// Length of the pieces in which a shaft is drawn, m, and length that is drawn, m.
 const PIECE_M: f64 = 0.002_5;
 const FOLLOWED_M: f64 = 0.25;
-/// A piece of a shaft ends a little beyond its ends, in lengths, so that bent ones leave no gap.
+/// A piece of a shaft extends a little beyond its ends, in lengths, so that bent ones leave no gap.
 const BESIDE: std::ops::RangeInclusive<f64> = -0.25..=1.25;
-/// What is farther outside than this is not drawn, px.
+/// Objects farther outside the image than this are not drawn, px.
 const OUTSIDE_PX: f64 = 300.0;
 
-/// Draws pictures of three bytes a pixel.
+/// Draws images with three bytes per pixel.
 pub(super) struct Painter {
     camera: Camera,
     surface_m: f64,
@@ -54,7 +55,7 @@ impl Painter {
         Self { camera, surface_m: ground.surface_m, picture: pixels.clone(), ground: pixels }
     }
 
-    /// The picture with these instruments.
+    /// Draws the image with these instruments.
     pub(super) fn draw(&mut self, instruments: &[Instrument]) -> &[u8] {
         self.picture.copy_from_slice(&self.ground);
         for instrument in instruments {
@@ -81,7 +82,7 @@ impl Painter {
         });
     }
 
-    /// From the far end to the tip, so that what is nearer covers what is farther.
+    /// From the far end to the tip, so that near parts cover far ones.
     fn shaft(&mut self, Instrument { tip_m, trocar_m }: &Instrument) {
         let Some(axis) = (trocar_m - tip_m).try_normalize(1e-6) else { return };
         let [width, height] = self.camera.lens.size_px.map(|side| side as f64);
@@ -101,7 +102,7 @@ impl Painter {
             let [(near_px, ..), (far_px, radius_px, along_m)] = [pair[0], pair[1]];
             let colour = if along_m <= STEEL_M { STEEL } else { SHAFT };
             self.near([near_px, far_px], radius_px, |pixel, away| {
-                // As a round rod that is lit from the lens.
+                // Shaded like a round rod lit from the lens.
                 let light = 0.25 + 0.75 * (1.0 - away * away).max(0.0).sqrt();
                 *pixel = colour.map(|value| (value * light) as u8);
             });
@@ -113,14 +114,14 @@ impl Painter {
         self.near([middle_px; 2], radius_px, |pixel, _| *pixel = MARK);
     }
 
-    /// Place and radius of a ball in the picture, px.
+    /// Position and radius of a ball in the image, px.
     fn disc(&self, middle_m: &Vector3<f64>, radius_m: f64) -> Option<(Vector2<f64>, f64)> {
         let middle_px = self.camera.project(middle_m)?;
         let beside_px = self.camera.project(&(middle_m + self.camera.right() * radius_m))?;
         Some((middle_px, (beside_px - middle_px).norm()))
     }
 
-    /// Every pixel that is nearer than `radius_px` to a line; `paint` is told how far away it is, in radii.
+    /// Visits every pixel that is nearer than `radius_px` to a line; `paint` gets its distance in radii.
     fn near(&mut self, ends_px: [Vector2<f64>; 2], radius_px: f64, mut paint: impl FnMut(&mut [u8; 3], f64)) {
         let [width, height] = self.camera.lens.size_px;
         let range = |of: fn(&Vector2<f64>) -> f64, most: usize| {
@@ -150,11 +151,11 @@ impl Painter {
     }
 }
 
-/// What the instruments move over.
+/// The surface under the instruments.
 #[expect(clippy::struct_field_names, reason = "the unit")]
 struct Ground {
     surface_m: f64,
-    /// Half the sides of the tissue, m; without tissue there is none.
+    /// Half the sides of the tissue, m; `None` without tissue.
     half_m: Option<[f64; 2]>,
     targets_m: Vec<Vector3<f64>>,
 }

@@ -1,5 +1,5 @@
-//! Pictures into a file or a named pipe, one after the other, for whoever reads raw streams: JPEGs, or H.264 where the path ends so. A reader that
-//! is slow gets fewer pictures, and one that comes later begins with the next.
+//! Writes images into a file or a named pipe, one after the other, for programs that read raw streams: JPEGs, or H.264
+//! if the path has that ending. A slow reader gets fewer images, and a late one begins with the next image.
 
 use std::{
     fs::OpenOptions,
@@ -15,10 +15,9 @@ use nima_endoscope::{h264::Encoder, jpeg};
 use super::shot::Shot;
 use crate::emulators::EmulatedFault;
 
-/// Time from a failure to the next attempt.
 const RETRY: Duration = Duration::from_millis(200);
 
-/// A picture on its way.
+/// An image to be written.
 struct Job {
     rgb: Vec<u8>,
     size_px: [usize; 2],
@@ -27,7 +26,7 @@ struct Job {
 
 pub(super) struct Pipe(SyncSender<Job>);
 
-/// How a stream is coded.
+/// Coding of a stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Coding {
     Jpeg(u8),
@@ -35,17 +34,17 @@ enum Coding {
 }
 
 impl Coding {
-    /// By the path's ending.
+    /// Chosen by the path's ending.
     fn of(path: &std::path::Path, rate_hz: f64, quality: u8) -> Self {
         let is_h264 = |ending: &std::ffi::OsStr| ["h264", "264"].iter().any(|known| ending.eq_ignore_ascii_case(known));
         if path.extension().is_some_and(is_h264) { Self::H264(rate_hz) } else { Self::Jpeg(quality) }
     }
 }
 
-/// Whether pictures can be coded for this path.
+/// Checks whether images can be coded for this path.
 ///
 /// # Errors
-/// In a program that was built without what it takes.
+/// In a program built without the required feature.
 pub(super) fn check(path: &std::path::Path, rate_hz: f64) -> io::Result<()> {
     match Coding::of(path, rate_hz, 1) {
         Coding::Jpeg(_) => Ok(()),
@@ -54,7 +53,7 @@ pub(super) fn check(path: &std::path::Path, rate_hz: f64) -> io::Result<()> {
 }
 
 impl Pipe {
-    /// Writes on a thread of its own: opening a named pipe waits for its reader.
+    /// Writes on its own thread, because opening a named pipe waits for its reader.
     pub(super) fn start(path: PathBuf, rate_hz: f64, quality: u8) -> io::Result<Self> {
         check(&path, rate_hz)?;
         let coding = Coding::of(&path, rate_hz, quality);
@@ -68,16 +67,16 @@ impl Pipe {
         Ok(Self(sender))
     }
 
-    /// A picture, if the last one has left.
+    /// Sends an image if the previous one has been written.
     pub(super) fn send(&self, shot: &Shot<'_>, fault: EmulatedFault) {
         self.0.try_send(Job { rgb: shot.rgb.to_vec(), size_px: shot.size_px, fault }).ok();
     }
 }
 
-/// Writes until the reader has gone (then it is tried again), or the emulator (then nothing).
+/// Writes until the reader closes (then it is tried again), or the emulator ends.
 fn write(path: &std::path::Path, coding: Coding, jobs: &Receiver<Job>) -> io::Result<Option<()>> {
     let Ok(mut file) = OpenOptions::new().write(true).create(true).truncate(true).open(path) else {
-        // A folder that is not there yet; what waits is old then.
+        // The folder does not exist yet; waiting images will be outdated then.
         return Ok(jobs.recv().ok().map(drop));
     };
     let mut encoder = None;

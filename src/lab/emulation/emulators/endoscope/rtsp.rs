@@ -1,28 +1,28 @@
-//! The emulated endoscope as a network camera: answers of RTSP (RFC 2326), and H.264 in packets of RTP (RFC 6184) over the same connection, with
-//! reports of the sender. Without input and output.
+//! The emulated endoscope as a network camera: responses of RTSP (RFC 2326), and H.264 in packets of RTP (RFC 6184)
+//! over the same connection, with sender reports. Without I/O.
 
 use std::time::Duration;
 
 use nima_endoscope::h264;
 
-/// Longest request.
+/// Maximum request, bytes.
 const REQUEST_MOST: usize = 8 << 10;
-/// Longest payload of a packet: what fits into an Ethernet frame, as cameras send.
+/// Maximum payload of a packet, bytes: fits into an Ethernet frame, as sent by cameras.
 const PAYLOAD_MOST: usize = 1400;
 const CLOCK_HZ: f64 = 90_000.0;
 const PAYLOAD_TYPE: u8 = 96;
 const SOURCE: u32 = 0x4e49_4d41;
-/// From 1900, from which reports count, to 1970, s.
+/// From 1900, the epoch of the reports, to 1970, s.
 const SINCE_1900_S: u64 = 2_208_988_800;
 const REPORT_EVERY: Duration = Duration::from_secs(1);
-/// A NAL unit that is sent in pieces.
+/// Type of a NAL unit that is sent in pieces.
 const FRAGMENTS: u8 = 28;
 
 /// A connection that speaks RTSP.
 #[derive(Debug, Default)]
 pub(super) struct Session {
     held: Vec<u8>,
-    /// Channel of the packets, once it plays; that of the reports is the next one.
+    /// Channel of the packets while playing; the reports use the next one.
     channel: u8,
     pub(super) plays: bool,
     sequence: u16,
@@ -31,27 +31,28 @@ pub(super) struct Session {
     reported: Option<Duration>,
 }
 
-/// What a request comes to.
+/// Result of a request.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Reply {
     pub(super) text: String,
-    /// It plays from now on.
+    /// Whether it starts to play.
     pub(super) begins: bool,
     pub(super) ends: bool,
 }
 
-/// Whether bytes are the beginning of a request of RTSP.
+/// Whether bytes are the beginning of an RTSP request.
 pub(super) fn is_rtsp(request: &[u8]) -> bool {
     request.split(|byte| *byte == b'\n').next().is_some_and(|line| line.trim_ascii_end().ends_with(b"RTSP/1.0"))
 }
 
 impl Session {
-    /// Takes bytes of a client; gives an answer to each request that is whole. `announces` is what the camera says it sends.
+    /// Processes bytes of a client; returns a response to each complete request. `announces` is the camera's
+    /// description of its stream.
     pub(super) fn hear(&mut self, bytes: &[u8], announces: &str) -> Vec<Reply> {
         self.held.extend_from_slice(bytes);
         let mut replies = Vec::new();
         loop {
-            // Reports of the receiver come on the same connection.
+            // Receiver reports arrive on the same connection.
             if let [b'$', _, high, low, ..] = self.held[..] {
                 let length = 4 + usize::from(u16::from_be_bytes([high, low]));
                 if self.held.len() < length {
@@ -99,7 +100,7 @@ impl Session {
                     let transport = format!("Transport: RTP/AVP/TCP;unicast;interleaved={channel}-{next}\r\n{session}");
                     told("200 OK", &transport, "")
                 }
-                // Players ask for datagrams first.
+                // Players request datagrams first.
                 None => told("461 Unsupported Transport", "", ""),
             },
             "PLAY" => {
@@ -118,7 +119,8 @@ impl Session {
         reply
     }
 
-    /// The packets of a picture that was taken then (since 1970), each on its channel; now and then a report before them.
+    /// Returns the packets of an image taken at this time (since 1970), each on its channel, preceded by a report from
+    /// time to time.
     pub(super) fn packets(&mut self, unit: &[u8], since: Duration) -> Vec<u8> {
         let stamp = (since.as_secs_f64() * CLOCK_HZ) as u64 as u32;
         let mut out = Vec::with_capacity(unit.len() + unit.len() / 50 + 100);
@@ -159,7 +161,7 @@ impl Session {
         framed(out, self.channel, &[&[&head[..]], payload].concat());
     }
 
-    /// Report of the sender (RFC 3550, 6.4.1), and its name, without which a report is not whole.
+    /// Sender report (RFC 3550, 6.4.1), with the sender's name, which a complete report needs.
     fn report(&self, stamp: u32, since: Duration) -> Vec<u8> {
         let mut report = vec![0x80, 200, 0, 6];
         let fraction = (u64::from(since.subsec_nanos()) << 32) / 1_000_000_000;
@@ -183,13 +185,13 @@ fn is_known(url: &str) -> bool {
     matches!(path.trim_end_matches('/'), "" | "/stream" | "/stream/picture" | "/picture")
 }
 
-/// What a line of a head says, whatever the case of its name.
+/// Returns the value of a header, whose name is case-insensitive.
 fn header<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     let lines = head.lines().filter_map(|line| line.split_once(':'));
     lines.into_iter().find(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.trim())
 }
 
-/// The first of the two channels that a client asks for; nothing if it wants datagrams.
+/// Returns the first of the two requested channels; `None` if the client requests datagrams.
 fn channels(transport: &str) -> Option<u8> {
     let wanted = transport.split(',').find(|wanted| wanted.contains("RTP/AVP/TCP"))?;
     let pair = wanted.split(';').find_map(|part| part.trim().strip_prefix("interleaved="));
@@ -202,7 +204,7 @@ fn answer(status: &str, number: &str, more: &str, body: &str) -> String {
     format!("RTSP/1.0 {status}\r\nCSeq: {number}\r\n{more}{length}\r\n{body}")
 }
 
-/// What the camera says it sends (RFC 4566).
+/// Returns the camera's description of its stream (RFC 4566).
 pub(super) fn announcement(encoding: &str) -> String {
     format!(
         "v=0\r\no=- 0 0 IN IP4 127.0.0.1\r\ns=nima endoscope\r\nc=IN IP4 0.0.0.0\r\nt=0 0\r\na=control:*\r\nm=video 0 RTP/AVP {PAYLOAD_TYPE}\r\n\
@@ -210,7 +212,7 @@ pub(super) fn announcement(encoding: &str) -> String {
     )
 }
 
-/// Bytes on a channel of the connection.
+/// Writes bytes on a channel of the connection.
 fn framed(out: &mut Vec<u8>, channel: u8, parts: &[&[u8]]) {
     let length: usize = parts.iter().map(|part| part.len()).sum();
     out.extend_from_slice(&[b'$', channel]);

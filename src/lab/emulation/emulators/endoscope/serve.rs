@@ -1,4 +1,4 @@
-//! Serves the pictures: one answer that never ends for everyone who asks, as parts over HTTP or as packets over RTSP.
+//! Serves the images: one endless response for every client, as parts over HTTP or as packets over RTSP.
 
 use std::{
     collections::VecDeque,
@@ -20,29 +20,29 @@ use crate::emulators::{
     wires::{End, tcp},
 };
 
-/// Longest request that is read.
+/// Maximum request, bytes.
 const REQUEST_MOST: usize = 8 << 10;
-/// How late a late picture leaves, s.
+/// Delay of a late image, s.
 const LATE_S: f64 = 0.4;
-/// It is looked so often whether a picture is made, s.
+/// Interval at which a finished image is checked for, s.
 const LOOK_S: f64 = 1e-3;
-/// What a browser or a player asks for.
+/// Paths that a browser or a player may request.
 const PATHS: [&str; 4] = ["/", "/stream", "/stream.mjpg", "/?action=stream"];
 
 pub(super) struct Endoscope {
     emulated: Emulated,
-    /// How what is before the lens is at a time.
+    /// Returns the view at a time.
     seen: Box<dyn FnMut(f64) -> Seen + Send>,
     subject: Option<Subject>,
-    /// Made when the first picture is wanted.
+    /// Started when the first image is requested.
     workshop: Option<Workshop>,
-    /// The next picture is one with which a player can begin.
+    /// Whether the next image must be one with which a player can begin.
     wants_key: bool,
     clients: Vec<Client>,
     due_s: f64,
-    /// When it is looked whether a picture is made, s.
+    /// When to check next for a finished image, s.
     looks_s: f64,
-    /// When each late picture leaves, s.
+    /// When to send each late image, s.
     late: VecDeque<(f64, Sent)>,
 }
 
@@ -53,7 +53,7 @@ struct Client {
 }
 
 enum Watches {
-    /// It has not asked yet.
+    /// Has not sent a request yet.
     Nothing,
     Parts,
     Packets(rtsp::Session),
@@ -89,16 +89,16 @@ impl Endoscope {
         self.workshop.as_ref().is_some_and(|workshop| workshop.is_busy)
     }
 
-    /// Orders the picture of this time.
+    /// Orders the image of this time.
     fn order(&mut self, now_s: f64, fault: EmulatedFault) {
-        // Before it is looked: whoever reads this time knows that nothing in the picture is older.
+        // Read the time before the view: a reader of this time knows that nothing in the image is older.
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let seen = (self.seen)(now_s);
         if let Some(subject) = self.subject.take() {
             let Emulated { pipe, rate_hz, quality, .. } = &self.emulated;
-            // Whether it can be written was tried when it was asked for.
+            // Whether it can be written was checked when it was requested.
             let pipe = pipe.clone().and_then(|path| Pipe::start(path, *rate_hz, *quality).ok());
-            // Without a thread there is no picture, and the client tells that nothing comes.
+            // Without a thread there is no image, and the client reports that no data arrive.
             self.workshop = Workshop::start(self.emulated.clone(), subject, pipe).ok();
         }
         let parts = self.clients.iter().any(|client| matches!(client.watches, Watches::Parts));
@@ -113,7 +113,7 @@ impl Endoscope {
     fn send(&mut self, sent: &Sent, turn: &mut Turn<'_>) {
         for client in &mut self.clients {
             match &mut client.watches {
-                // Who came while it was made waits for the next one.
+                // A client that connected while the image was rendered waits for the next one.
                 Watches::Parts if !sent.part.is_empty() => turn.send(client.peer, &sent.part),
                 Watches::Packets(session) if session.plays && !sent.unit.is_empty() => {
                     turn.send(client.peer, &session.packets(&sent.unit, sent.since));
@@ -123,7 +123,7 @@ impl Endoscope {
         }
     }
 
-    /// An answer to what a player asks.
+    /// Answers a player's requests.
     fn replied(&mut self, from: Peer, replies: &[Reply], turn: &mut Turn<'_>) {
         for reply in replies {
             turn.send(from, reply.text.as_bytes());
@@ -138,7 +138,7 @@ impl Endoscope {
     }
 }
 
-/// Answer to a whole request, and whether pictures follow.
+/// Returns the response to a complete request, and whether images follow.
 fn answer(request: &[u8]) -> (String, bool) {
     let first = String::from_utf8_lossy(request.split(|byte| *byte == b'\r').next().unwrap_or_default()).into_owned();
     let mut words = first.split(' ');
@@ -159,7 +159,7 @@ fn answer(request: &[u8]) -> (String, bool) {
     }
 }
 
-/// What the camera says it sends over RTSP; nothing in a program that was built without it.
+/// Returns the camera's description of its RTSP stream; empty in a program built without it.
 fn announces(fault: EmulatedFault) -> String {
     match fault {
         _ if !h264::IS_BUILT => String::new(),
@@ -203,7 +203,7 @@ impl Emulator for Endoscope {
             client.request.clear();
             client.watches = if watches { Watches::Parts } else { Watches::Nothing };
             turn.send(from, answer.as_bytes());
-            // The first picture comes at once.
+            // The first image is rendered at once.
             self.due_s = turn.now_s;
         }
     }
@@ -215,7 +215,7 @@ impl Emulator for Endoscope {
         while let Some((_, sent)) = self.late.pop_front_if(|(leaves_s, _)| *leaves_s <= turn.now_s) {
             self.send(&sent, turn);
         }
-        // What a player is told at the beginning holds to the end: a camera that changes it hangs up.
+        // The description sent at the beginning must remain valid: a camera that changes it disconnects.
         if turn.fault == EmulatedFault::OtherFormat && self.clients.iter().any(Client::wants_unit) {
             turn.hang_up();
             self.lose(Peer::Everyone);
@@ -228,7 +228,7 @@ impl Emulator for Endoscope {
             }
         }
         if self.is_watched() && turn.now_s >= self.due_s && !self.is_busy() {
-            // What was missed is not caught up.
+            // Missed images are skipped.
             self.due_s = (self.due_s + self.emulated.rate_hz.recip()).max(turn.now_s);
             self.order(turn.now_s, turn.fault);
         }

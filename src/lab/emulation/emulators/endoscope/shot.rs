@@ -1,4 +1,4 @@
-//! Takes pictures of the scene: through one lens, or through two whose pictures lie side by side.
+//! Renders images of the scene: through one lens, or through two with their images side by side.
 
 use std::time::Duration;
 
@@ -9,23 +9,23 @@ use nima_simulation::scene::Scene;
 use super::{Emulated, Instrument, board::Drawn, draw::Painter, push};
 use crate::emulators::EmulatedFault;
 
-/// What is before the lens.
+/// The objects in front of the lens.
 pub(super) enum Subject {
     Scene(Box<Scene>),
     /// For the calibration of one lens.
     Board(Board),
 }
 
-/// How it is at some time.
+/// Their state at one time.
 pub(super) enum Seen {
     Instruments(Vec<Instrument>),
-    /// The board's place before the lens.
+    /// The board's pose in front of the lens.
     Board(Isometry3<f64>),
 }
 
-/// What draws it.
+/// The renderer of a subject.
 enum Easel {
-    /// One for each lens; and the same where a push moves the endoscope, once it has been pushed.
+    /// One painter for each lens; and the same for the pushed endoscope, once it has been pushed.
     Scene {
         here: Vec<Painter>,
         moved: Option<Vec<Painter>>,
@@ -41,7 +41,7 @@ pub(super) struct Studio {
     size_px: [usize; 2],
 }
 
-/// A picture of three bytes a pixel.
+/// An image with three bytes per pixel.
 pub(super) struct Shot<'a> {
     pub(super) rgb: &'a [u8],
     pub(super) size_px: [usize; 2],
@@ -60,8 +60,8 @@ impl Studio {
         Self { emulated, easel, rgb: Vec::new(), size_px: [0; 2] }
     }
 
-    /// The picture of what was seen then (since 1970), black or half as large where that is the fault; of a camera that hangs the last one again,
-    /// if there was one.
+    /// Renders the view of this time (since 1970), black or at half the size if that is the fault; a frozen camera
+    /// repeats the last image, if there was one.
     pub(super) fn take(&mut self, since: Duration, seen: &Seen, fault: EmulatedFault) -> Shot<'_> {
         if fault == EmulatedFault::Freeze && !self.rgb.is_empty() {
             return Shot { rgb: &self.rgb, size_px: self.size_px };
@@ -100,7 +100,7 @@ impl Studio {
                 self.rgb.clear();
                 self.rgb.extend_from_slice(drawn.draw(camera_from_board));
             }
-            // Made as pairs where the emulator is made.
+            // The emulator always creates them in matching pairs.
             (Easel::Scene { .. }, Seen::Board(_)) | (Easel::Board(_), Seen::Instruments(_)) => {}
         }
     }
@@ -112,7 +112,7 @@ fn painters(camera: Camera, baseline_m: Option<f64>, scene: &Scene) -> Vec<Paint
     [Some(camera), second].into_iter().flatten().map(|camera| Painter::new(camera, scene)).collect()
 }
 
-/// Every second pixel of every second row.
+/// Keeps every second pixel of every second row.
 fn halved(rgb: &[u8], [width, height]: [usize; 2]) -> (Vec<u8>, [usize; 2]) {
     let half_px = [width / 2, height / 2];
     let rows = rgb.chunks_exact(3 * width).step_by(2).take(half_px[1]);

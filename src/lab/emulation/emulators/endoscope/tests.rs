@@ -24,7 +24,7 @@ fn scene() -> Scene {
     Scene::load("bimanual").unwrap()
 }
 
-/// Small pictures, so that a busy machine keeps up.
+/// Small images, so that a busy machine keeps up.
 fn small(k1: f64) -> Camera {
     let mut settings = usual(&scene());
     settings.k1 = k1;
@@ -37,7 +37,6 @@ fn serve() -> Serving {
     serve_with(None)
 }
 
-/// Also writes into a file.
 fn serve_with(pipe: Option<std::path::PathBuf>) -> Serving {
     let emulated =
         Emulated { camera: small(usual(&scene()).k1), square_px: SQUARE_PX, pipe, ..Emulated::of(&scene(), 0) };
@@ -107,7 +106,7 @@ fn a_tip_is_seen_where_the_camera_says_through_either_distortion() {
 #[test]
 fn its_picture_arrives_with_the_time_at_which_it_was_made() {
     let now_us = || SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros() as u64;
-    // Its first picture is made before anybody looks.
+    // Its first image is rendered before a client connects.
     let begin_us = now_us();
     let serving = serve();
     let feed = feed(&serving);
@@ -140,7 +139,7 @@ fn every_fault_is_told_by_its_name_and_forgotten_when_it_has_gone() {
             EmulatedFault::Late => {
                 |standing| matches!(standing, Standing::Wrong(Wrong::Late(late)) if late.as_millis() > 300)
             }
-            // These take a picture out now and then, or mean nothing to a camera.
+            // These drop an image from time to time, or do not apply to a camera.
             _ => continue,
         };
         until(&feed, "live", is_live);
@@ -162,7 +161,7 @@ fn frozen_is_told_in_time_and_a_cut_is_mended_within_a_second() {
         serving.faults.set(EmulatedFault::Freeze);
         let begin = Instant::now();
         until(&feed, "frozen", |look| matches!(look.standing, Standing::Wrong(Wrong::Frozen(_))));
-        // One more period, in which the last fresh picture was on its way.
+        // Plus one period, during which the last fresh image was in transit.
         assert!(begin.elapsed() <= FROZEN + Duration::from_millis(40), "{:?}", begin.elapsed());
         serving.faults.set(EmulatedFault::Disconnect);
         until(&feed, "lost", |look| matches!(look.standing, Standing::Lost(_)));
@@ -274,7 +273,7 @@ fn a_wrong_page_and_a_wrong_setting_are_told() {
 }
 
 #[test]
-#[ignore = "figures of docs/endoscope.md: 20 s, alone; a 1280 x 720 picture 30 times a second"]
+#[ignore = "figures of docs/results/endoscope.md: 20 s, alone; a 1280 x 720 picture 30 times a second"]
 fn figures_of_a_picture_on_its_way() {
     let serving = Emulated::of(&scene(), 0).with(&scene(), in_the_air(&scene())).serve().unwrap();
     let feed = Feed::start(serving.endpoint.parse().unwrap(), Some([1280, 720]), || {}).unwrap();
@@ -294,7 +293,7 @@ fn figures_of_a_picture_on_its_way() {
         thread::sleep(Duration::from_micros(500));
     }
     for (what, values) in
-        [("frame complete to picture handed over", &mut work_ms), ("made to handed over", &mut whole_ms)]
+        [("from the complete frame to its delivery", &mut work_ms), ("from rendering to delivery", &mut whole_ms)]
     {
         values.sort_by(f64::total_cmp);
         let at = |share: f64| values[((values.len() - 1) as f64 * share) as usize];

@@ -1,4 +1,5 @@
-//! Makes the pictures on a thread of its own, so that neither the emulator's clients nor, in an emulated rig, the other devices wait for it.
+//! Renders the images on its own thread, so that neither the emulator's clients nor, in an emulated rig, the other
+//! devices wait for it.
 
 use std::{
     io,
@@ -16,38 +17,38 @@ use super::{
 };
 use crate::emulators::EmulatedFault;
 
-/// What stands between two pictures in the answer.
+/// Separator between two images in the response.
 pub(super) const BOUNDARY: &str = "nima-endoscope";
 
-/// A picture to be made.
+/// An image to be rendered.
 pub(super) struct Order {
-    /// The time that stands in it, since 1970: nothing in it is older.
+    /// Time in its time code, since 1970: nothing in the image is older.
     pub(super) since: Duration,
     pub(super) seen: Seen,
     pub(super) fault: EmulatedFault,
-    /// Somebody watches over HTTP.
+    /// Whether a client watches over HTTP.
     pub(super) parts: bool,
-    /// Somebody watches over RTSP.
+    /// Whether a client watches over RTSP.
     pub(super) units: bool,
-    /// A player begins with it.
+    /// Whether a player begins with it.
     pub(super) key: bool,
 }
 
-/// A picture on its way, as those who watch want it; empty for those who do not.
+/// A finished image in the forms that its clients need; empty for the other forms.
 #[derive(Default)]
 pub(super) struct Sent {
-    /// One part of the answer over HTTP.
+    /// A part of the HTTP response.
     pub(super) part: Vec<u8>,
-    /// A picture of the stream over RTSP.
+    /// A frame of the RTSP stream.
     pub(super) unit: Vec<u8>,
     pub(super) since: Duration,
 }
 
-/// The thread; it ends when this is dropped.
+/// The rendering thread; it ends when this is dropped.
 pub(super) struct Workshop {
     orders: SyncSender<Order>,
     made: Receiver<Sent>,
-    /// An order is not done yet.
+    /// Whether an order is pending.
     pub(super) is_busy: bool,
 }
 
@@ -70,12 +71,12 @@ impl Workshop {
         Ok(Self { orders, made, is_busy: false })
     }
 
-    /// Begins the next picture, unless one is still being made.
+    /// Starts the next image, unless one is still being rendered.
     pub(super) fn order(&mut self, order: Order) {
         self.is_busy |= self.orders.try_send(order).is_ok();
     }
 
-    /// The picture that was ordered, once it is made.
+    /// Returns the ordered image once it is finished.
     pub(super) fn made(&mut self) -> Option<Sent> {
         let sent = self.made.try_recv().ok()?;
         self.is_busy = false;
@@ -83,7 +84,8 @@ impl Workshop {
     }
 }
 
-/// A picture takes milliseconds, and other devices need theirs a thousand times a second. No lock of theirs is ever taken on this thread.
+/// An image takes milliseconds, and other devices need their threads a thousand times per second. This thread never
+/// takes a lock of theirs.
 fn give_way() {
     #[cfg(target_os = "linux")]
     #[expect(unsafe_code, reason = "std has no priorities")]
@@ -93,7 +95,7 @@ fn give_way() {
     }
 }
 
-/// A third of an ordinary thread's share where both want a processor.
+/// Gets a third of the processor time of an ordinary thread when both compete.
 #[cfg(target_os = "linux")]
 const NICE: libc::c_int = 5;
 
@@ -104,7 +106,7 @@ struct Bench {
     coders: Coders,
 }
 
-/// For all who watch; each is made when the first of them does.
+/// For all clients; each is created for its first client.
 struct Coders {
     quality: u8,
     jpeg: Option<([usize; 2], jpeg::Encoder)>,
@@ -126,9 +128,9 @@ impl Bench {
         if parts {
             sent.part = self.coders.part(&shot, since, fault);
         }
-        // An encoder never makes the same bytes of the same picture: a stream that hangs has no more pictures.
+        // An encoder never repeats its bytes for an equal image, so a frozen stream sends no more images.
         if units && fault != EmulatedFault::Freeze {
-            // A picture that the library does not take is not sent: the client tells that nothing comes.
+            // An image that the library rejects is not sent: the client reports that no data arrive.
             sent.unit = self.coders.unit(&shot, key, self.rate_hz).unwrap_or_default();
             if fault == EmulatedFault::Torn {
                 sent.unit.truncate(sent.unit.len() * 6 / 10);

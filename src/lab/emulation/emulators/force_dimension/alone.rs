@@ -1,8 +1,8 @@
-//! `nima emulate force-dimension`: an omega.7 behind the stand-in library.
+//! `nima emulate force-dimension`: an omega.7 behind the stub library.
 //!
-//! The endpoint is the address for `NIMA_EMULATED_HANDLE`, followed by ` library=PATH` where the stand-in library was found.
-//! Settings: `serial`, `left_handed`, `motor_limit_n`, `reset`, `port`; of the hand that holds it `x_m`, `y_m`, `z_m`, `radius_m`, `yaw_rad`,
-//! `gripper_rad`, `stiffness_n_m`.
+//! The endpoint is the address for `NIMA_EMULATED_HANDLE`, followed by ` library=PATH` if the stub library was found.
+//! Settings: `serial`, `left_handed`, `motor_limit_n`, `reset`, `port`; of the hand that holds it `x_m`, `y_m`, `z_m`,
+//! `radius_m`, `yaw_rad`, `gripper_rad`, `stiffness_n_m`.
 
 use std::io::Result;
 

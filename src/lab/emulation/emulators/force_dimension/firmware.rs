@@ -1,13 +1,13 @@
-//! The emulated device's own rules: modes, watchdog, velocity threshold, saturation. No input, no output, time is handed in.
+//! The emulated device's own rules: modes, watchdog, velocity threshold, saturation. Without I/O; time is passed in as
+//! an argument.
 //!
-//! As the SDK tells them: force on brings FORCE; stop and too much speed bring BRAKE with a cause; a watchdog that runs out too;
-//! brakes off bring IDLE. Force is applied in FORCE only.
+//! According to the SDK: force on selects FORCE; stop, excessive speed and an expired watchdog select BRAKE with a
+//! cause; brakes off selects IDLE. Force is applied only in FORCE.
 
 use drd::wire::Order;
 use nalgebra::Vector3;
 use nima_devices::force_dimension::status::{ENTRIES, ForceOffCause};
 
-/// Mode of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// No current.
@@ -19,12 +19,11 @@ pub enum Mode {
     Brake,
 }
 
-/// What the motors do to the hand.
+/// Output of the motors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Applied {
-    /// Mode.
     pub mode: Mode,
-    /// Force on the hand, N; zero outside of [`Mode::Force`].
+    /// Force on the hand, N; zero outside [`Mode::Force`].
     pub force_n: Vector3<f64>,
     /// Force of the gripper, N.
     pub gripper_n: f64,
@@ -46,14 +45,14 @@ pub(super) struct Firmware {
 
 /// Velocity threshold after power-up, mm/s.
 const THRESHOLD_MM_S: u32 = 2000;
-/// Between two positions from which the hand's speed is found, s.
+/// Time between two positions from which the hand's speed is computed, s.
 const SPEED_OVER_S: f64 = 0.004;
-/// Speed within the positions of a hand that jumped is no speed, m/s: a world that begins anew.
+/// A speed above this results from a jump of the position, m/s: the world has restarted.
 const JUMP_M_S: f64 = 50.0;
 const STEP_S: f64 = 125e-6;
 
 impl Firmware {
-    /// With motors that can do so much, N.
+    /// With this limit of the motors, N.
     pub(super) fn new(motor_limit_n: f64) -> Self {
         Self {
             applied: Applied::default(),
@@ -66,17 +65,17 @@ impl Firmware {
         }
     }
 
-    /// What the motors do.
+    /// Output of the motors.
     pub(super) const fn applied(&self) -> &Applied {
         &self.applied
     }
 
-    /// Takes force away.
+    /// Switches the force off.
     pub(super) const fn cut(&mut self, cause: ForceOffCause) {
         self.applied = Applied { mode: Mode::Brake, force_n: Vector3::new(0.0, 0.0, 0.0), gripper_n: 0.0, cause };
     }
 
-    /// Lets time pass with the hand at `position_m`.
+    /// Advances the time with the hand at `position_m`.
     pub(super) fn pass(&mut self, now_s: f64, position_m: &Vector3<f64>) {
         let silent_s = now_s - self.commanded_s;
         if self.applied.mode == Mode::Force
@@ -97,7 +96,7 @@ impl Firmware {
         }
     }
 
-    /// Obeys an order; true when the motors were saturated.
+    /// Executes an order; returns whether the motors were saturated.
     pub(super) fn obey(&mut self, now_s: f64, order: Order, argument: u32, values: [f64; 4]) -> bool {
         match order {
             Order::Force => return self.force(now_s, values),
@@ -106,7 +105,7 @@ impl Firmware {
                 self.applied.mode = Mode::Idle;
             }
             Order::EnableForce => {
-                // The cause of the last end of force stays to be read.
+                // The last cause of switching off remains readable.
                 self.applied = Applied { mode: Mode::Force, cause: self.applied.cause, ..Applied::default() };
                 self.commanded_s = now_s;
             }
@@ -135,7 +134,6 @@ impl Firmware {
         saturated
     }
 
-    /// The status array.
     pub(super) fn status(&self, fault: bool, reset: bool) -> [u32; ENTRIES] {
         let mode = self.applied.mode;
         let off = self.applied.cause as u32;
@@ -147,7 +145,7 @@ impl Firmware {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "a force is handed on as it is, and none is exactly zero")]
+#[expect(clippy::float_cmp, reason = "a force is passed on unchanged, and no force is exactly zero")]
 mod tests {
     use super::*;
 

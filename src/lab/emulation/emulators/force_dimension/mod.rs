@@ -1,7 +1,8 @@
-//! The emulated omega.7 at the other end of the stand-in library's socket.
+//! The emulated omega.7 at the other end of the stub library's socket.
 //!
-//! A program that loads the stand-in library (our driver, or a third-party client) asks here, one datagram for one USB exchange. The
-//! hand that holds the handle is a [`Body`]: it is told what the motors do and says where the handle is.
+//! A program that loads the stub library (our driver, or a third-party client) sends its requests here, one datagram
+//! for one USB exchange. The hand that holds the handle is a [`Body`]: it receives the motors' output and returns the
+//! pose of the handle.
 
 pub(super) mod alone;
 mod firmware;
@@ -20,18 +21,16 @@ pub use firmware::{Applied, Mode};
 
 use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::udp};
 
-/// Where the handle is, in the device's frame.
+/// Pose of the handle, in the device's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandState {
-    /// Position, m.
     pub position_m: Vector3<f64>,
-    /// Orientation.
     pub orientation: UnitQuaternion<f64>,
     /// Opening of the gripper, rad.
     pub gripper_rad: f64,
-    /// Buttons, first in the lowest bit.
+    /// Buttons, the first in the lowest bit.
     pub buttons: u32,
-    /// The force button on the base is being pressed.
+    /// Whether the force button on the base is pressed.
     pub force_button: bool,
 }
 
@@ -47,23 +46,23 @@ impl Default for HandState {
     }
 }
 
-/// The hand: called with the time since the start (s) and what the motors do, about once a millisecond.
+/// The hand: called with the time since the start (s) and the motors' output, about once per millisecond.
 pub trait Body: FnMut(f64, &Applied) -> HandState + Send + 'static {}
 
 impl<T: FnMut(f64, &Applied) -> HandState + Send + 'static> Body for T {}
 
-/// A hand that follows its own slow way and gives way to force like a spring.
+/// A hand that moves slowly on its own path and yields to force like a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
-    /// Where it rests, m.
+    /// Rest position, m.
     pub rest_m: Vector3<f64>,
-    /// Radius of its way around there, m; one turn takes four seconds.
+    /// Radius of its circular path, m; one turn takes four seconds.
     pub radius_m: f64,
-    /// Turn about the device's z, rad.
+    /// Rotation about the device's z, rad.
     pub yaw_rad: f64,
     /// Opening of the gripper, rad.
     pub gripper_rad: f64,
-    /// Stiffness with which it holds, N/m.
+    /// Stiffness of its grip, N/m.
     pub stiffness_n_m: f64,
 }
 
@@ -79,11 +78,10 @@ impl Default for Held {
     }
 }
 
-/// How fast a held handle gives way, s.
+/// Time constant with which a held handle yields, s.
 const GIVE_S: f64 = 0.010;
 
 impl Held {
-    /// As a body.
     pub fn body(self) -> impl Body {
         let mut last_s = 0.0;
         let mut given_m = Vector3::zeros();
@@ -105,18 +103,16 @@ impl Held {
     }
 }
 
-/// An emulated omega.7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emulated {
-    /// Serial number.
     pub serial: u16,
-    /// Right or left hand; anything else is a device that our driver refuses.
+    /// Right or left hand; our driver refuses any other kind of device.
     pub kind: Kind,
     /// Force beyond which the motors are saturated, N.
     pub motor_limit_n: f64,
-    /// It waits for its calibration.
+    /// Whether it waits for its calibration.
     pub reset: bool,
-    /// UDP port; 0: any.
+    /// UDP port; 0 selects a free one.
     pub port: u16,
 }
 
@@ -127,28 +123,27 @@ impl Default for Emulated {
     }
 }
 
-/// A client that says nothing for so long no longer has the device, s.
+/// A client that is silent for this long loses the device, s.
 const SESSION_S: f64 = 1.0;
 const FIRMWARE: f64 = 3.2;
 /// The gripper counts as pressed below this, rad.
 const GRIPPER_CLOSED_RAD: f64 = 0.02;
 
 impl Emulated {
-    /// In this hand. The endpoint is the address for `NIMA_EMULATED_HANDLE`.
+    /// Held by this hand. The endpoint is the address for `NIMA_EMULATED_HANDLE`.
     pub fn with(self, body: impl Body) -> Box<dyn Emulator> {
         Box::new(Machine::new(self, Box::new(body), None))
     }
 }
 
-/// The device that serves.
 struct Machine {
     of: Emulated,
     body: Box<dyn Body>,
-    /// The stand-in library, told with the endpoint.
+    /// Path of the stub library, reported with the endpoint.
     library: Option<PathBuf>,
     firmware: Firmware,
     state: HandState,
-    /// What clients see while it is frozen.
+    /// The state that clients see while it is frozen.
     frozen: Option<HandState>,
     client: Option<(u64, f64)>,
     pressed: bool,
@@ -161,11 +156,11 @@ impl Machine {
         Self { of, body, library, firmware, state, frozen: None, client: None, pressed: false }
     }
 
-    /// Lets the world go on.
+    /// Advances the world.
     fn tick(&mut self, now_s: f64, fault: EmulatedFault) {
         self.state = (self.body)(now_s, self.firmware.applied());
         self.firmware.pass(now_s, &self.state.position_m);
-        // The button on the base takes force away and gives it back.
+        // The button on the base switches force off and on again.
         if self.state.force_button && !self.pressed && self.firmware.applied().mode == Mode::Force {
             self.firmware.cut(ForceOffCause::Button);
         }
@@ -249,7 +244,7 @@ impl Emulator for Machine {
         }
     }
 
-    /// A real device has a processor of its own.
+    /// A real device has its own processor.
     fn begin(&mut self) {
         nima_devices::force_dimension::prepare_thread();
     }
@@ -275,7 +270,7 @@ impl Emulator for Machine {
     }
 }
 
-/// The stand-in library beside the running program, or one folder up, where cargo puts it.
+/// Finds the stub library next to the running program, or one folder up, where cargo puts it.
 pub fn stand_in() -> Option<std::path::PathBuf> {
     let name = format!("{}drd{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let program = std::env::current_exe().ok()?;

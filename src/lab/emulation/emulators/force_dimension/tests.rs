@@ -1,4 +1,4 @@
-//! The driver against the emulated device, through the stand-in library and its socket.
+//! The driver against the emulated device, through the stub library and its socket.
 
 mod exchange;
 mod faults;
@@ -22,11 +22,11 @@ use super::*;
 use crate::emulators::Serving;
 
 thread_local! {
-    /// Folders of this test's copies: gone with its thread. What is loaded stays usable without its file.
+    /// Folders of this test's copies, deleted with its thread. A loaded library stays usable without its file.
     static COPIES: RefCell<Vec<tempfile::TempDir>> = const { RefCell::new(Vec::new()) };
 }
 
-/// A stand-in library of its own for each test: a copy, so that it knows this test's devices only.
+/// A separate copy of the stub library for each test, so that it sees only this test's devices.
 pub(super) fn library() -> PathBuf {
     let built = stand_in().expect("cargo builds the stand-in library before the tests");
     let folder = tempfile::tempdir().unwrap();
@@ -36,7 +36,7 @@ pub(super) fn library() -> PathBuf {
     copy
 }
 
-/// What the hand says next and what was last done to it.
+/// The next state of the hand, and the last output of the motors.
 #[derive(Clone, Default)]
 pub(super) struct Hand {
     pub(super) state: Arc<Mutex<HandState>>,
@@ -50,7 +50,7 @@ impl Hand {
         move |_: f64, applied: &Applied| {
             *hand.applied.lock().unwrap() = *applied;
             let mut state = *hand.state.lock().unwrap();
-            // No hand is quite still.
+            // No hand is perfectly still.
             wobble = wobble.wrapping_add(1);
             state.position_m.z += f64::from(wobble % 7) * 1e-7;
             state
@@ -66,7 +66,7 @@ impl Hand {
     }
 }
 
-/// An emulated device with a hand, and settings that reach it.
+/// An emulated device with a hand, and settings to connect to it.
 pub(super) fn rig(emulator: Emulated) -> (Serving, Hand, Settings) {
     let hand = Hand::default();
     let serving = emulator.with(hand.body()).serve().unwrap();
@@ -75,7 +75,7 @@ pub(super) fn rig(emulator: Emulated) -> (Serving, Hand, Settings) {
     (serving, hand, settings)
 }
 
-/// Polls once a millisecond until something is so; false after five seconds.
+/// Polls once per millisecond until `good`; false after five seconds.
 pub(super) fn until(
     driver: &mut Driver,
     mut good: impl FnMut(&mut Driver, Option<Stamped<HandleReading>>) -> bool,
@@ -101,7 +101,7 @@ fn turn_on(driver: &mut Driver) {
     assert!(until(driver, |driver, _| driver.take_event() == Some(HandleEvent::ForceOn)), "force comes on");
 }
 
-/// Switches force on and asks for 1 N along x until it is in the hand.
+/// Switches force on and commands 1 N along x until it reaches the hand.
 fn push(driver: &mut Driver, hand: &Hand) {
     turn_on(driver);
     assert!(until(driver, |driver, _| {
@@ -124,7 +124,7 @@ fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
         let mut driver = open(&settings).unwrap();
         assert_eq!(driver.identity().product, "omega.7");
         assert_eq!((driver.identity().serial.as_str(), driver.identity().firmware.as_str()), ("4711", "3.2"));
-        assert_eq!(driver.velocity_threshold(), Some(2000), "the threshold of the device is left as it is");
+        assert_eq!(driver.velocity_threshold(), Some(2000), "the threshold of the device is unchanged");
         assert_eq!(hand.applied().mode, Mode::Brake, "connected is not engaged");
         let mut newest = None;
         assert!(until(&mut driver, |driver, reading| {
@@ -146,7 +146,7 @@ fn it_connects_and_reads_what_the_hand_does_without_a_gap() {
 /// A round this late leaves the handle little of the half period for which it waits.
 const LATE: Duration = Duration::from_micros(200);
 
-/// Readings that come in this many rounds of a loop, one in 1.2 ms, which is a fifth slower than the handle's own cycle.
+/// Counts readings in this many rounds of a loop with a period of 1.2 ms, a fifth slower than the handle's own cycle.
 fn readings_in(driver: &mut Driver, rounds: u32, mut each: impl FnMut(&mut Driver)) -> u64 {
     driver.poll(now_s());
     let before = driver.health().readings;
@@ -159,7 +159,7 @@ fn readings_in(driver: &mut Driver, rounds: u32, mut each: impl FnMut(&mut Drive
         driver.poll(now_s());
         each(driver);
     }
-    // A handle waits for a loop that comes half a period late, and no longer.
+    // A handle waits for a loop that is half a period late, and no longer.
     if late * 50 > rounds {
         too_busy();
     }

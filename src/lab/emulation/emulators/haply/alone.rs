@@ -1,5 +1,5 @@
-//! `nima emulate haply`: an Inverse3 on a pseudo-terminal, whose grip goes round and gives way to the force. Settings: `id` (four
-//! hexadecimal digits), `model`, `firmware`, `link` (name of the line).
+//! `nima emulate haply`: an Inverse3 on a pseudo-terminal, whose grip moves in a circle and yields to the force.
+//! Settings: `id` (four hexadecimal digits), `model`, `firmware`, `link` (name of the port).
 
 use std::{io::Result, path::PathBuf};
 

@@ -1,8 +1,9 @@
-//! An emulated Inverse3 on a pseudo-terminal: it answers every request at once, as the manufacturer's own client expects.
+//! An emulated Inverse3 on a pseudo-terminal: it answers every request at once, as the manufacturer's own client
+//! expects.
 //!
-//! Where the grip is comes from its [`Body`], which is told the force that is on the hand. The wire has no checksum and
-//! no fault bits. Kinematics, gravity compensation, power and temperatures are not emulated; nor is what a real handle
-//! does when its line falls silent, which is not documented: here the last force stays.
+//! The position of the grip comes from its [`Body`], which receives the force on the hand. The protocol has no checksum
+//! and no fault bits. Kinematics, gravity compensation, power and temperatures are not emulated. The reaction of a real
+//! handle to a silent connection is not documented and not emulated either: here the last force remains.
 
 pub(super) mod alone;
 #[cfg(test)]
@@ -22,24 +23,24 @@ use nima_devices::haply::{
 
 use crate::emulators::{EmulatedFault, Emulator, End, Peer, Turn, wires::terminal};
 
-/// Where the grip is at a time (s since the emulator began) with this force on the hand (N, in the device's axes).
+/// Returns the state of the grip at a time (s since the emulator began) with this force on the hand (N, in the device's
+/// axes).
 pub type Body = Box<dyn FnMut(f64, &Vector3<f64>) -> State + Send>;
 
-/// Requests of the manufacturer's client that no driver of ours makes: torques and angles of the joints, a position.
+/// Requests of the manufacturer's client that our driver does not use: torques and angles of the joints, a position.
 const TORQUES: u8 = 0x1A;
 const ANGLES: u8 = 0x1C;
 const POSITION: u8 = 0x2C;
 /// Code of the joints' answer.
 const JOINTS: u8 = 0x1B;
-/// A request that is not whole after so long is given up, s.
+/// An incomplete request is dropped after this time, s.
 const PAUSE_S: f64 = 0.02;
 
-/// How an emulated handle is.
+/// Properties of an emulated handle.
 #[derive(Clone, Debug)]
 pub struct Emulated {
-    /// Its identity.
     pub info: DeviceInfo,
-    /// The name of its line; a folder of its own where none is given.
+    /// The name of its port; by default in its own folder.
     pub link: Option<PathBuf>,
 }
 
@@ -51,25 +52,25 @@ impl Default for Emulated {
 }
 
 impl Emulated {
-    /// With where the grip is.
+    /// Makes the emulator with a source of positions.
     pub fn with(self, body: Body) -> Box<dyn Emulator> {
         let Self { info, link } = self;
         Box::new(Device { info, link, body, heard: Vec::new(), heard_s: 0.0, force_n: Vector3::zeros(), frozen: None })
     }
 }
 
-/// The force on the hand, for whoever looks from outside.
+/// The force on the hand, readable from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Felt(Arc<Mutex<Vector3<f64>>>);
 
 impl Felt {
-    /// The newest force, N.
+    /// Returns the newest force, N.
     pub fn force_n(&self) -> Vector3<f64> {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A grip that a soft spring (300 N/m) leads along a circle of 10 mm about the middle of the workspace, and that gives way to the
-    /// force.
+    /// A grip that a soft spring (300 N/m) leads along a circle of 10 mm about the middle of the workspace, and that
+    /// yields to the force.
     pub fn on_a_circle(&self) -> Body {
         const SPRING_N_M: f64 = 300.0;
         const RADIUS_M: f64 = 0.01;
@@ -95,12 +96,12 @@ struct Device {
     heard: Vec<u8>,
     heard_s: f64,
     force_n: Vector3<f64>,
-    /// What it repeats while it is frozen.
+    /// The state repeated while it is frozen.
     frozen: Option<State>,
 }
 
 impl Device {
-    /// Length of a request, bytes; `None` for a code that it does not know.
+    /// Returns the length of a request, bytes; `None` for an unknown code.
     const fn length_of(code: u8) -> Option<usize> {
         match code {
             WAKE_UP => Some(1),
@@ -122,7 +123,7 @@ impl Device {
         state
     }
 
-    /// Answers the first request of what was heard; false if it is not whole.
+    /// Answers the first received request; false if it is incomplete.
     fn answer(&mut self, to: Peer, turn: &mut Turn<'_>) -> bool {
         let Some(code) = self.heard.first().copied() else { return false };
         let Some(length) = Self::length_of(code) else {

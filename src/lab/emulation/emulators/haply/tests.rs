@@ -18,7 +18,8 @@ fn serving() -> (Serving, Felt) {
     (Emulated::default().with(felt.on_a_circle()).serve().unwrap(), felt)
 }
 
-/// The loop: a tick each millisecond with this force, until `good` or for this long; whether it was good.
+/// Runs a loop with a tick every millisecond and this force, until `good` or for this long; returns whether `good` was
+/// reached.
 fn run(
     driver: &mut Driver,
     begin: Instant,
@@ -65,7 +66,7 @@ fn the_hand_feels_the_force_and_gives_way_and_the_lever_reaches_it_without_the_l
         let rate_hz = driver.health().rate_hz;
         // The loop of this test sleeps for a millisecond between two ticks.
         assert!(rate_hz > 300.0 || driver.health().readings < 300, "{rate_hz} Hz");
-        // From here on the loop stands still.
+        // From here on the loop has stopped.
         lever.pull();
         std::thread::sleep(Duration::from_millis(20));
         assert_eq!(felt.force_n(), Vector3::zeros());

@@ -1,5 +1,6 @@
-//! Emulated caps and pedals. Settings: `path` of the socket (else a folder of its own), `model` of a cap (`split`, `combined`) or of a pedal
-//! (`keyboard`, `switches`); `x, y, z, rx, ry, rz` (-1 to 1) and `buttons` hold a cap still, `pressed` (bits) a pedal.
+//! Emulated caps and pedals. Settings: `path` of the socket (by default in its own folder), `model` of a cap (`split`,
+//! `combined`) or of a pedal (`keyboard`, `switches`); `x, y, z, rx, ry, rz` (-1 to 1) and `buttons` hold a cap still,
+//! `pressed` (bits) holds a pedal.
 
 use std::io::Result;
 

@@ -1,8 +1,9 @@
-//! Emulated caps and pedals on a socket of packets, and an emulated `spacenavd` on its stream.
+//! Emulated caps and pedals on a packet socket, and an emulated `spacenavd` on its stream.
 //!
-//! A client gets one packet that tells who the device is, `nima-hid VVVV:PPPP SERIAL NAME`, then one packet per report, as from a hidraw
-//! node; what it sends are output reports. Faults that a human interface device cannot have (checksums, status bits) do
-//! nothing; "not a number" is an axis far beyond its range, or a keyboard that cannot tell its keys.
+//! A client first gets one packet that identifies the device, `nima-hid VVVV:PPPP SERIAL NAME`, then one packet per
+//! report, as from a hidraw node; its own packets are output reports. Faults that a human interface device cannot have
+//! (checksums, status bits) do nothing; "not a number" is an axis far beyond its range, or a keyboard that reports a
+//! roll-over error.
 
 use std::{
     io,
@@ -32,36 +33,36 @@ mod tests;
 pub use models::{CapBody, CapModel, PedalBody, PedalModel};
 use models::{CapSide, PedalSide, SpacenavdSide};
 
-/// One side of the wire: makes what the device sends.
+/// One kind of device: makes the data to send.
 trait Side: Send {
-    /// Its socket in a folder of its own.
+    /// Name of its socket in its own folder.
     const NAME: &'static str;
-    /// Between two steps.
+    /// Time between two steps.
     fn period(&self) -> Duration;
-    /// What a new client is told first; `None` for a stream, which begins without a word.
+    /// First packet for a new client; `None` for a stream, which has no greeting.
     fn hello(&self) -> Option<String>;
     /// Makes the frames of this step.
     fn step(&mut self, now_s: f64, fault: EmulatedFault, send: &mut dyn FnMut(&[u8]));
-    /// Takes what a client sent.
+    /// Processes data of a client.
     fn command(&mut self, bytes: &[u8]);
 }
 
-/// An emulated cap at this path, or in a folder of its own.
+/// An emulated cap at this path, or in its own folder.
 pub fn cap(path: Option<PathBuf>, model: CapModel, body: CapBody) -> Box<dyn Emulator> {
     Box::new(Periodic { path, side: CapSide::new(model, body), due_s: 0.0 })
 }
 
-/// An emulated pedal, placed as a cap.
+/// An emulated pedal, placed like a cap.
 pub fn pedal(path: Option<PathBuf>, model: PedalModel, body: PedalBody) -> Box<dyn Emulator> {
     Box::new(Periodic { path, side: PedalSide::new(model, body), due_s: 0.0 })
 }
 
-/// An emulated `spacenavd` with one cap, placed as a cap.
+/// An emulated `spacenavd` with one cap, placed like a cap.
 pub fn spacenavd(path: Option<PathBuf>, body: CapBody) -> Box<dyn Emulator> {
     Box::new(Periodic { path, side: SpacenavdSide::new(body), due_s: 0.0 })
 }
 
-/// A side that speaks at its own pace.
+/// A device that sends at its own rate.
 struct Periodic<S> {
     path: Option<PathBuf>,
     side: S,
@@ -93,7 +94,7 @@ impl<S: Side> Emulator for Periodic<S> {
     fn pass(&mut self, turn: &mut Turn<'_>) {
         if turn.now_s >= self.due_s {
             self.side.step(turn.now_s, turn.fault, &mut |frame| turn.send(Peer::Everyone, frame));
-            // After a pause of the whole machine: no burst.
+            // No burst after a pause of the whole machine.
             self.due_s = (self.due_s + self.side.period().as_secs_f64()).max(turn.now_s);
         }
     }

@@ -1,4 +1,4 @@
-//! The emulated devices themselves: what they send and when.
+//! The emulated devices themselves: content and timing of their reports.
 
 use super::{
     CapReading, CapReport, Duration, EmulatedFault, Event, HidIdentity, Layout, PedalReading, Side, Vector3, cap_codec,
@@ -8,7 +8,6 @@ use super::{
 /// Zero reports before a cap falls silent at rest.
 const ZEROS: u32 = 3;
 
-/// Which cap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CapModel {
     /// `SpaceNavigator`: translation and rotation in turn, one report every 8 ms.
@@ -18,16 +17,16 @@ pub enum CapModel {
     Combined,
 }
 
-/// What moves an emulated cap, and what it shows.
+/// Motion and light of an emulated cap.
 pub struct CapBody {
-    /// Where the cap is at a time since the start, s.
+    /// Returns the state of the cap at a time since the start, s.
     pub now: Box<dyn FnMut(f64) -> CapReading + Send>,
     /// Called when its light is switched.
     pub light: Box<dyn FnMut(bool) + Send>,
 }
 
 impl CapBody {
-    /// A slow turn through all axes with a rest in every cycle of 8 s; the first button blinks.
+    /// A slow motion through all axes with a rest in every cycle of 8 s; the first button blinks.
     pub fn alone() -> Self {
         Self { now: Box::new(demonstration), light: Box::new(|_| {}) }
     }
@@ -54,7 +53,7 @@ fn demonstration(now_s: f64) -> CapReading {
     }
 }
 
-/// What emulated caps share: when they speak, and the reading that a fault may freeze.
+/// Common to emulated caps: when they send, and the reading that a fault may freeze.
 struct Mover {
     body: CapBody,
     reading: CapReading,
@@ -68,7 +67,7 @@ impl Mover {
         Self { body, reading, zeros_left: 0, told_buttons: 0 }
     }
 
-    /// Moves on; true when axes are to be told, and the buttons when they changed.
+    /// Advances; returns whether axes must be sent, and the buttons if they changed.
     fn step(&mut self, now_s: f64, fault: EmulatedFault) -> (bool, Option<u32>) {
         if fault != EmulatedFault::Freeze {
             self.reading = (self.body.now)(now_s);
@@ -141,7 +140,7 @@ impl Side for CapSide {
             counts = [i16::MAX; 6];
         }
         let length = self.report(counts).encode(&mut buffer);
-        // Between the two lengths there is no report.
+        // No report has a length between the two.
         let length = if fault == EmulatedFault::WrongFrame { 5 } else { length };
         send(&buffer[..length]);
     }
@@ -166,7 +165,7 @@ impl SpacenavdSide {
     }
 }
 
-/// Between two events of the daemon, ms.
+/// Time between two events of the daemon, ms.
 const SPACENAVD_MS: u8 = 16;
 
 impl Side for SpacenavdSide {
@@ -192,7 +191,7 @@ impl Side for SpacenavdSide {
         }
         if speaks {
             let [x, y, z, rx, ry, rz] = counts_of(&self.mover.reading).map(i32::from);
-            // To the daemon's axes from those of the device.
+            // Converts the device's axes to the daemon's.
             let mut event = Event::Motion([x, -z, -y, rx, -rz, -ry]).encode(i32::from(SPACENAVD_MS));
             if fault == EmulatedFault::WrongFrame {
                 event[..4].copy_from_slice(&99_i32.to_ne_bytes());
@@ -205,11 +204,11 @@ impl Side for SpacenavdSide {
     }
 
     fn command(&mut self, _: &[u8]) {
-        // A request for protocol 1; without an answer a client takes protocol 0.
+        // A request for protocol 1; without an answer a client uses protocol 0.
     }
 }
 
-/// Which pedal.
+/// Model of a pedal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PedalModel {
     /// `PCsensor`, three switches: keys `b`, `a`, `c`.
@@ -219,11 +218,11 @@ pub enum PedalModel {
     Switches,
 }
 
-/// What presses an emulated pedal: the switches at a time since the start, s.
+/// Returns the pressed switches of an emulated pedal at a time since the start, s.
 pub struct PedalBody(pub Box<dyn FnMut(f64) -> PedalReading + Send>);
 
 impl PedalBody {
-    /// The first switch is pressed for one second in three, the second after it for half a second.
+    /// The first switch is pressed for one second in three, the second switch after it for half a second.
     pub fn alone() -> Self {
         Self::pressed_by(|now_s| {
             let phase_s = now_s.rem_euclid(3.0);
@@ -276,7 +275,7 @@ impl Side for PedalSide {
         if fault != EmulatedFault::Freeze {
             self.reading = (self.body.0)(now_s);
         }
-        // A faulty device does not wait for a foot.
+        // A faulty device reports without a foot on it.
         let chatters = matches!(fault, Garbage | NotANumber | Reorder | WrongFrame);
         if self.reading == self.told && !chatters {
             return;

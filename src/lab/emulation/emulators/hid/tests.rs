@@ -26,7 +26,7 @@ fn deflected() -> CapReading {
 }
 
 fn same(one: &CapReading, other: &CapReading) -> bool {
-    // A count is 1/350.
+    // One count is 1/350.
     (one.translation - other.translation).amax() < 2e-3
         && (one.rotation - other.rotation).amax() < 2e-3
         && one.buttons == other.buttons
@@ -52,7 +52,7 @@ fn pedal_settings(serving: &Serving) -> PedalSettings {
     PedalSettings { source: serving.endpoint.clone(), ..PedalSettings::default() }
 }
 
-/// Polls every millisecond until `done`, at most 3 s; the time it took, s.
+/// Polls every millisecond until `done`, at most 3 s; returns the time it took, s.
 fn until<D: Device>(device: &mut D, mut done: impl FnMut(&mut D, Option<Stamped<D::Reading>>) -> bool) -> Option<f64> {
     let begin = Instant::now();
     while begin.elapsed() < Duration::from_secs(3) {
@@ -95,7 +95,7 @@ fn both_kinds_of_cap_arrive_whole_at_their_rates() {
                 driver.health().rate_hz > 0.0
             })
             .unwrap();
-            // A client that is told the buttons only when they change misses what was before it.
+            // Buttons are sent only when they change, so a client misses earlier changes.
             assert!(same(&newest, &CapReading { buttons: newest.buttons, ..deflected() }), "{newest:?}");
             let Health { rate_hz: rate, lost, damaged, refused, .. } = *driver.health();
             assert!(rate > 0.5 * rate_hz && rate < 1.3 * rate_hz, "{model:?}: {rate} Hz");
@@ -134,7 +134,7 @@ fn a_cap_that_falls_silent_while_deflected_lets_go_within_the_watchdogs_time() {
         });
         assert!(took_s.unwrap() > RELEASE_AFTER_S * 0.5);
         assert_eq!(driver.health().lost, 2, "both halves");
-        assert_eq!(driver.health().standing, Standing::Connected, "silence at rest is no loss");
+        assert_eq!(driver.health().standing, Standing::Connected, "silence at rest does not count as a loss");
         serving.faults.set(EmulatedFault::None);
         assert!(until(&mut driver, |_, reading| reading.is_some_and(|reading| both(&reading.value))).is_some());
     });
@@ -180,7 +180,7 @@ fn the_light_is_on_while_connected() {
     });
 }
 
-/// What a driver must come to under a fault.
+/// The driver's expected state under a fault.
 type Expected = fn(&Health) -> bool;
 
 const LOST: fn(&Health, Loss) -> bool = |health, loss| health.standing == Standing::Lost(loss);

@@ -1,4 +1,4 @@
-//! Actions, waypoints and sequences: motions that the base makes by itself and tells the end of.
+//! Actions, waypoints and sequences: motions that the base performs by itself, with notifications of their end.
 
 use std::collections::VecDeque;
 
@@ -38,7 +38,7 @@ const ABORTED: u32 = 2;
 const TASK_STARTED: u32 = 4;
 const TASK_COMPLETED: u32 = 5;
 const STARTED: u32 = 6;
-/// Most waypoints in a list.
+/// Maximum number of waypoints in a list.
 const WAYPOINTS: usize = 1000;
 
 /// Actions that every arm has, with their identifiers.
@@ -48,7 +48,7 @@ const OWN: [(u32, &str, [f32; ARM_JOINTS]); 3] = [
     (4, "Zero", [0.0; ARM_JOINTS]),
 ];
 
-/// What is under way.
+/// The action in progress.
 enum Playing {
     Action(ActionHandle),
     Sequence { handle: Handle, task: u32, rest: VecDeque<Action> },
@@ -61,7 +61,7 @@ pub(super) struct Player {
 }
 
 impl Player {
-    /// Calls about actions and sequences, but for those that create and delete sequences.
+    /// Answers calls about actions and sequences, except those that create and delete sequences.
     pub(super) fn answer(&mut self, rpc: Rpc, payload: &[u8], robot: &mut Robot, topics: &mut Topics) -> Answered {
         match rpc {
             READ_SEQUENCE => return self.sequences.get(payload),
@@ -109,7 +109,7 @@ impl Player {
         Ok(())
     }
 
-    /// Tells what came to its end, and goes on with a sequence. True when nothing is under way any more.
+    /// Reports what has ended, and continues a sequence. Returns true when nothing is in progress any more.
     pub(super) fn advance(&mut self, robot: &mut Robot, topics: &mut Topics) -> bool {
         let Some(ended) = robot.take_end() else { return false };
         match self.playing.take() {
@@ -173,7 +173,7 @@ fn referred(handle: &ActionHandle) -> Result<Action, Refused> {
 
 fn plan(action: &Action, from_rad: &Joints) -> Result<Vec<Leg>, Refused> {
     let to_rad = if let Some(reached) = &action.reach_angles {
-        // The order counts; the manufacturer's examples leave the joints' numbers out.
+        // The order counts, because the manufacturer's examples omit the joints' numbers.
         let angles = reached.angles.iter().flat_map(|angles| &angles.angles);
         goal(&angles.map(|angle| angle.value_deg).collect::<Vec<_>>(), from_rad)?
     } else if let Some(reached) = &action.reach_pose {
@@ -188,7 +188,7 @@ fn plan(action: &Action, from_rad: &Joints) -> Result<Vec<Leg>, Refused> {
     Ok(vec![leg(from_rad, to_rad, 0.0)?])
 }
 
-/// The ways through the waypoints, or which of them cannot be, and why.
+/// Returns the path through the waypoints, or which waypoint is impossible, and why.
 fn legs(list: &Waypoints, from_rad: &Joints) -> Result<Vec<Leg>, (usize, Refused)> {
     if !(1..=WAYPOINTS).contains(&list.waypoints.len()) {
         return Err((0, INVALID_PARAM));
@@ -211,7 +211,7 @@ fn way(waypoint: &Waypoint, from_rad: &Joints) -> Result<Leg, Refused> {
     leg(from_rad, reach(&pose, from_rad)?, 0.0)
 }
 
-/// The report of a list that cannot be followed (`TrajectoryErrorType`).
+/// Returns the report of a list that cannot be followed (`TrajectoryErrorType`).
 fn errors(list: &Waypoints, from_rad: &Joints) -> Vec<WaypointError> {
     let Err((waypoint, refused)) = legs(list, from_rad) else { return Vec::new() };
     let (kind, message) = match refused {

@@ -1,5 +1,5 @@
-//! `nima emulate kinova`: a Gen3 on free ports, or on those that `tcp_port` and `udp_port` give. `watchdog_ms` sets the time without a
-//! command that is a fault.
+//! `nima emulate kinova`: a Gen3 on free ports, or on those set by `tcp_port` and `udp_port`. `watchdog_ms` sets the
+//! time without a command that counts as a fault.
 
 use std::io::Result;
 

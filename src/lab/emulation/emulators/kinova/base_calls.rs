@@ -1,4 +1,4 @@
-//! Calls of the service `Base` that are neither actions nor entities.
+//! Calls of the service `Base` other than actions and entities.
 
 use nima_devices::{
     ARM_JOINTS,
@@ -49,7 +49,7 @@ impl Base {
                 self.robot.set_mode(read::<Number>(payload)?.value).map_err(device)?;
                 self.release();
             }
-            // There is no gripper: the command finds none, and no finger is told.
+            // There is no gripper: the command has no effect, and no finger is reported.
             GRIPPER_COMMAND => {}
             _ => return self.question(call),
         }
@@ -110,7 +110,7 @@ fn pose(joint_rad: &Joints) -> Pose {
     Pose { x: place.x, y: place.y, z: place.z, theta_x: theta[0], theta_y: theta[1], theta_z: theta[2] }
 }
 
-/// Joint angles of a client, by their order.
+/// Joint angles of a client, in order.
 fn given(angles: &JointAngles) -> Result<Joints, Refused> {
     let degrees: Vec<f32> = angles.angles.iter().map(|angle| angle.value_deg).collect();
     goal(&degrees, &[0.0; ARM_JOINTS])

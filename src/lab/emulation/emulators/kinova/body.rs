@@ -1,4 +1,4 @@
-//! What moves: the simulated world's arm, or a stand-in.
+//! The moving part: the simulated world's arm, or a simple substitute.
 
 use nalgebra::{Vector3, Vector6};
 use nima_devices::{
@@ -10,43 +10,39 @@ use nima_devices::{
     },
 };
 
-/// What the emulated base asks of the body now.
+/// Current command of the emulated base to the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Asked {
-    /// Nothing: brakes or a holding base.
+    /// None: brakes on, or a holding base.
     #[default]
     Rest,
-    /// These angles, rad, each in the turn nearest to the last ones.
+    /// These angles, rad, each in the turn nearest to the last one.
     Joints([f64; ARM_JOINTS]),
     /// This velocity of the tool.
     Twist {
         /// In this frame.
         frame: TwistFrame,
-        /// m/s.
         linear_m_s: Vector3<f64>,
-        /// rad/s.
         angular_rad_s: Vector3<f64>,
     },
 }
 
-/// How the body is.
+/// State of the body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
-    /// Joint angles, rad.
     pub joint_rad: [f64; ARM_JOINTS],
-    /// Joint speeds, rad/s.
     pub joint_rad_s: [f64; ARM_JOINTS],
     /// Joint torques with the sign of commands, Nm.
     pub joint_nm: [f64; ARM_JOINTS],
     /// Force on the tool in the base frame, N.
     pub tool_force_n: Vector3<f64>,
-    /// Torque on it, Nm.
+    /// Torque on the tool, Nm.
     pub tool_torque_nm: Vector3<f64>,
 }
 
-/// A body of an emulated arm: a closure that takes the time since the last call (s) and what is asked.
+/// A body of an emulated arm: a closure that takes the time since the last call (s) and the command.
 pub trait Body: Send {
-    /// Goes on by `elapsed_s`.
+    /// Advances by `elapsed_s`.
     fn step(&mut self, elapsed_s: f64, asked: &Asked) -> BodyState;
 }
 
@@ -56,8 +52,8 @@ impl<F: FnMut(f64, &Asked) -> BodyState + Send> Body for F {
     }
 }
 
-/// An arm without a world: joints follow with a lag and within the arm's speeds. Until the first command it may sway slowly, so
-/// that a client sees numbers change.
+/// An arm without a world: joints follow with a lag and within the arm's speeds. Until the first command it may sway
+/// slowly, so that a client sees changing numbers.
 #[derive(Clone, Debug)]
 pub struct StandIn {
     state: BodyState,
@@ -69,11 +65,10 @@ pub struct StandIn {
 const LAG_S: f64 = 0.004;
 /// Sway of the last joint, rad, and its angular frequency, rad/s.
 const SWAY: (f64, f64) = (0.1, 0.6);
-/// Torque per angle that is left to go, Nm/rad: so that the torque shows who pushes.
+/// Torque per remaining angle, Nm/rad, so that the torque shows a push.
 const STIFFNESS: f64 = 40.0;
 
 impl StandIn {
-    /// At these angles, rad.
     pub fn at(joint_rad: [f64; ARM_JOINTS]) -> Self {
         Self { state: BodyState { joint_rad, ..BodyState::default() }, sways: false, time_s: 0.0 }
     }

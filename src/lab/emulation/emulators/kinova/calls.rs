@@ -26,13 +26,12 @@ struct Session {
     number: u16,
     link: Peer,
     heard_s: f64,
-    /// Silent for so long it is closed, s.
+    /// After this much silence it is closed, s.
     closes_s: f64,
-    /// Silent for so long its motion stops, s.
+    /// After this much silence its motion stops, s.
     stops_s: f64,
 }
 
-/// A call of a session.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'a> {
     pub(super) rpc: Rpc,
@@ -42,7 +41,7 @@ pub(super) struct Call<'a> {
     link: Peer,
 }
 
-/// The base: who is logged in, who drives, the devices within the arm, and the robot behind it.
+/// The base: sessions, control of the arm, the devices within the arm, and the robot behind it.
 pub(super) struct Base {
     pub(super) arm: Emulated,
     pub(super) robot: Robot,
@@ -53,9 +52,9 @@ pub(super) struct Base {
     pub(super) topics: Topics,
     sessions: Vec<Session>,
     made: u16,
-    /// Session whose command moves the arm.
+    /// The session whose command moves the arm.
     driving: Option<u16>,
-    /// Arm state and servoing mode, as they were told last.
+    /// Arm state and servoing mode of the last notification.
     told: (u32, ServoingMode),
 }
 
@@ -104,12 +103,12 @@ impl Base {
         self.topics.keep(|number| sessions.iter().any(|session| session.number == number));
     }
 
-    /// What is to be told to clients now.
+    /// Returns the notifications due now.
     pub(super) fn notices(&mut self) -> Vec<Notice> {
         self.topics.take()
     }
 
-    /// Sessions of links that are gone.
+    /// Removes the sessions of closed connections.
     pub(super) fn forget(&mut self, gone: impl Fn(Peer) -> bool) {
         if self.sessions.iter().any(|session| Some(session.number) == self.driving && gone(session.link)) {
             self.release();
@@ -122,7 +121,7 @@ impl Base {
         self.driving = None;
     }
 
-    /// Obeys a command that moves the arm, unless another session moves it.
+    /// Executes a motion command, unless another session moves the arm.
     pub(super) fn drive(
         &mut self,
         session: u16,
@@ -136,7 +135,7 @@ impl Base {
         Ok(())
     }
 
-    /// The number of the session and the payload of the answer.
+    /// Returns the session number and the payload of the answer.
     pub(super) fn answer(
         &mut self,
         link: Peer,
@@ -159,7 +158,7 @@ impl Base {
 
     fn serve(&mut self, call: &Call<'_>, now_s: f64, fault: EmulatedFault) -> Answered {
         let Call { rpc, device, payload, .. } = *call;
-        // The cyclic connection carries the cycle and its session only.
+        // The cyclic connection carries only the cycle and its session.
         if matches!(call.link, Peer::Address(_)) && !matches!(rpc.service, 1 | 3) {
             return Err(UNSUPPORTED_SERVICE);
         }
@@ -251,7 +250,7 @@ impl Base {
     }
 }
 
-/// Topics that are told of.
+/// Topics of notifications.
 const fn is_topic(rpc: Rpc) -> bool {
     matches!(
         rpc,

@@ -1,5 +1,5 @@
-//! `ControlConfig`: what the base is told of gravity, load and tool, and the limits of its own motion. Kept and told; the emulated
-//! motion does not depend on it.
+//! `ControlConfig`: gravity, load and tool, and the limits of the base's own motion. Values are stored and returned,
+//! but do not affect the emulated motion.
 
 use nima_core::kinematics::ACCELERATION_RAD_S2;
 use nima_devices::kinova::{
@@ -16,11 +16,11 @@ use super::{
     setting::Setting,
 };
 
-/// Control modes with limits of their own: joystick and trajectory, each angular and Cartesian, and Cartesian waypoints.
+/// Control modes with their own limits: joystick and trajectory, each angular and Cartesian, and Cartesian waypoints.
 const LIMITED_MODES: [u32; 5] = [1, 2, 4, 5, 12];
 
 pub(super) struct Control {
-    /// Each with the event that its change is (`ControlConfigurationEvent`).
+    /// Each with the event that reports its change (`ControlConfigurationEvent`).
     settings: Vec<(Setting, u32)>,
     soft: Vec<KinematicLimits>,
     desired: DesiredSpeeds,
@@ -49,7 +49,7 @@ impl Control {
         }
     }
 
-    /// The answer, and the event that the call is.
+    /// Returns the answer, and the event of the call.
     pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Result<(Vec<u8>, Option<u32>), Refused> {
         for (setting, event) in &mut self.settings {
             if let Some(answered) = setting.answer(function, payload) {
@@ -73,7 +73,7 @@ impl Control {
         }
     }
 
-    /// Speeds of a joystick, which there is none of.
+    /// Speeds of the joystick, which the emulated arm does not have.
     fn joystick(&mut self, function: u16, payload: &[u8]) -> Result<(Vec<u8>, Option<u32>), Refused> {
         let most = hard(0);
         match function {
@@ -118,7 +118,7 @@ impl Control {
     }
 }
 
-/// What no limit may exceed: the arm's own.
+/// Upper bounds of all limits: the arm's own limits.
 fn hard(mode: u32) -> KinematicLimits {
     KinematicLimits {
         mode,

@@ -1,7 +1,7 @@
 //! The devices within the arm, reached by the device id of a request: base, actuators, interconnect.
 //!
-//! Ids of the actuators: 1 to 7, as in the manufacturer's examples. The id of the interconnect is assumed to be the next one; clients
-//! take it from `ReadAllDevices`. There is no gripper and no vision module.
+//! Ids of the actuators: 1 to 7, as in the manufacturer's examples. The id of the interconnect is assumed to be the
+//! next one; clients read it from `ReadAllDevices`. There is no gripper and no vision module.
 
 use nima_devices::kinova::messages::{Number, Rpc, Text};
 use prost::Message;
@@ -16,7 +16,7 @@ use super::{
     setting::Setting,
 };
 
-/// Firmware that every device tells: 2.5.2 in the manufacturer's way.
+/// Firmware of every device: 2.5.2 in the manufacturer's encoding.
 const FIRMWARE: u32 = 0x0205_0002;
 /// Actuators up to this one are the large ones.
 const LARGE_ACTUATORS: u8 = 4;
@@ -56,7 +56,7 @@ impl Devices {
         }
     }
 
-    /// Refuses a service of the base that was asked of another device.
+    /// Refuses a call of a service of the base that was sent to another device.
     pub(super) fn check_base(&self, device: u8) -> Result<(), Refused> {
         if self.kind(device)? == Kind::Base { Ok(()) } else { Err(UNSUPPORTED_SERVICE) }
     }
@@ -87,13 +87,13 @@ impl Devices {
             PART_REVISION => text("1".to_owned()),
             Rpc::SERIAL_NUMBER if kind == Kind::Base => text(self.serial.clone()),
             Rpc::SERIAL_NUMBER => text(format!("{}-{device}", self.serial)),
-            // Administered locally: no manufacturer's.
+            // Locally administered, not a manufacturer's address.
             MAC_ADDRESS => Ok(MacAddress { bytes: vec![2, 0, 0, 0, 0, device] }.encode_to_vec()),
             _ => Err(UNSUPPORTED_METHOD),
         }
     }
 
-    /// `ActuatorConfig`, but for the faults, which are the robot's.
+    /// `ActuatorConfig`, except the faults, which belong to the robot.
     pub(super) fn actuator(&mut self, rpc: Rpc, device: u8, payload: &[u8]) -> Answered {
         self.actuator_index(device)?;
         if rpc == AXIS_OFFSETS {
@@ -104,7 +104,7 @@ impl Devices {
         answered.unwrap_or(Err(UNSUPPORTED_METHOD))
     }
 
-    /// Which joint the device moves.
+    /// Returns the joint that the device moves.
     pub(super) fn actuator_index(&self, device: u8) -> Result<usize, Refused> {
         match self.kind(device)? {
             Kind::Large | Kind::Small => Ok(usize::from(device) - 1),
@@ -121,8 +121,8 @@ impl Devices {
     }
 }
 
-/// What an actuator lets be set. The emulated joints follow positions in every control mode; in the manufacturer's example of
-/// torque control these are the measured ones.
+/// Settings of an actuator. The emulated joints follow positions in every control mode; in the manufacturer's example
+/// of torque control these are the measured positions.
 fn actuator() -> Vec<Setting> {
     let number = |value| Number { value };
     vec![

@@ -1,4 +1,5 @@
-//! The driver against the emulator over real sockets. Loop time is counted in ticks, but what the emulator waits for is real.
+//! The driver against the emulator over real sockets. Loop time is counted in ticks, but the emulator's timeouts are
+//! real.
 
 use std::{
     sync::{Arc, Mutex},
@@ -28,7 +29,7 @@ use crate::emulators::{
 const TICK_S: f64 = 1e-3;
 const HOME_RAD: [f64; ARM_JOINTS] = [0.0, 0.26, 3.12, -2.27, 0.0, 0.96, 1.57];
 
-/// An arm that does not mind pauses of a busy machine.
+/// An arm that tolerates pauses of a busy machine.
 pub(super) fn patient() -> Emulated {
     Emulated { watchdog_ms: 5_000.0, ..Emulated::default() }
 }
@@ -67,7 +68,7 @@ impl Ticking {
         self.reading.unwrap().value
     }
 
-    /// Ticks until it is so; at most `ticks`.
+    /// Runs ticks until `good`; at most `ticks`.
     pub(super) fn until(&mut self, ticks: u32, good: impl Fn(&Self) -> bool) -> bool {
         (0..ticks).any(|_| {
             self.tick();
@@ -75,7 +76,7 @@ impl Ticking {
         })
     }
 
-    /// One tick towards a target, no joint faster than 1 rad/s.
+    /// One tick towards a target, with no joint faster than 1 rad/s.
     fn lead(&mut self, target_rad: &[f64; ARM_JOINTS]) {
         let at = *self.driver.command_rad();
         let furthest = target_rad.iter().zip(&at).map(|(to, at)| (to - at).abs()).fold(0.0, f64::max);
@@ -92,7 +93,7 @@ impl Ticking {
     }
 }
 
-/// Sessions without a driver, for what the driver never does.
+/// Sessions without a driver, for calls that the driver never makes.
 fn raw(settings: &Settings) -> Lines {
     let mut lines = Lines::connect(settings).unwrap();
     lines.log_in(settings).unwrap();
@@ -115,7 +116,7 @@ fn refresh(frame_id: u32, joint_rad: &[f64; ARM_JOINTS]) -> Command {
     Command { frame_id, actuators: actuators.to_vec() }
 }
 
-/// What the body was asked, over time.
+/// The commands to the body over time.
 type Log = Arc<Mutex<Vec<Asked>>>;
 
 fn logged() -> (Log, impl Body) {
@@ -189,7 +190,7 @@ fn low_level_moves_to_targets_over_the_turn_without_jumps() {
             if let Asked::Joints(angles) = asked {
                 for j in 0..ARM_JOINTS {
                     let step = (angles[j] - last[j]).abs();
-                    // On a busy machine some commands come between two steps of the body.
+                    // On a busy machine several commands arrive between two steps of the body.
                     assert!(step <= GEN3[j].speed_rad_s * STEP_MAX_S * 20.0, "joint {j} jumps by {step}");
                 }
                 last = *angles;
@@ -236,7 +237,7 @@ fn leaving_brakes_first_and_the_arm_can_be_taken_over_by_others() {
         assert!(ticking.until(1000, |ticking| !ticking.latest().servoing));
         assert!(ticking.until(1000, |_| mode(&settings) == 2));
         ticking.enter_low_level();
-        // Somebody else takes the arm back to the single level.
+        // Another client switches the arm back to single-level servoing.
         let mut other = raw(&settings);
         other.ask(Rpc::SET_SERVOING_MODE, &Number { value: 2 }).unwrap();
         assert!(ticking.until(500, |ticking| ticking.driver.ousted() == 1));
@@ -302,7 +303,7 @@ fn the_emulator_refuses_what_the_arm_refuses() {
         lines.ask(Rpc::SET_SERVOING_MODE, &Number { value: 3 }).unwrap();
         assert!(lines.ask_cyclic(Rpc::REFRESH, &refresh(1, &HOME_RAD)).is_ok());
         assert_eq!(lines.ask(Rpc::SEND_TWIST, &nima_devices::kinova::messages::TwistCommand::default()), wrong_mode);
-        // A jump trips the following error, and stays until it is cleared.
+        // A jump trips the following error, which stays until it is cleared.
         let mut jump = HOME_RAD;
         jump[4] += 0.2;
         lines.ask_cyclic(Rpc::REFRESH, &refresh(2, &jump)).unwrap();

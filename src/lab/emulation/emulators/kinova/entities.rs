@@ -1,5 +1,5 @@
-//! Users, sequences and protection zones that clients create and delete; changes are told. They are kept and told only: nobody
-//! logs in as a created user, and a protection zone stops no motion.
+//! Users, sequences and protection zones that clients create and delete, with notifications of changes. They are only
+//! stored: a created user cannot log in, and a protection zone stops no motion.
 
 use nima_devices::kinova::messages::Rpc;
 use prost::Message as _;

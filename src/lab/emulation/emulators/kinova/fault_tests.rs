@@ -1,4 +1,4 @@
-//! Every emulated fault: noticed in time, and over when it is taken back. Figures of the cycle.
+//! Every emulated fault: detected in time, and over when it is removed. Measures the cycle.
 
 use std::{
     thread::sleep,
@@ -15,7 +15,7 @@ use nima_testing::real_time::judged;
 use super::driver_tests::{Ticking, patient, started};
 use crate::emulators::EmulatedFault;
 
-/// What each fault must lead to.
+/// Whether a fault has its expected effect.
 fn is_noticed(fault: EmulatedFault, health: &Health, before: &Health) -> bool {
     let lost_by = |loss: Loss| health.standing == Standing::Lost(loss);
     match fault {
@@ -47,7 +47,7 @@ fn every_loss_is_told_within_twenty_milliseconds_of_loop_time() {
     judged(|| {
         for fault in EmulatedFault::ALL {
             if matches!(fault, EmulatedFault::Loss | EmulatedFault::Garbage) {
-                // By chance: in the test below.
+                // Random: tested below.
                 continue;
             }
             let (serving, settings) = started(patient());
@@ -57,15 +57,15 @@ fn every_loss_is_told_within_twenty_milliseconds_of_loop_time() {
             serving.faults.set(fault);
             let noticed = ticking.until(1000, |ticking| is_noticed(fault, ticking.driver.health(), &before));
             assert!(noticed, "{fault:?}: {:?}", ticking.driver.health());
-            // From the last good reading on: the emulator may send one or two more before the fault shows. One tick is the poll
-            // that sees the limit passed.
+            // Counted from the last good reading, because the emulator may send one or two more before the fault shows.
+            // One tick is the poll that detects the exceeded limit.
             let age_s = ticking.driver.health().age_s(ticking.now_s);
             assert!(age_s < 0.0215, "{fault:?} took {age_s} s");
         }
     });
 }
 
-/// Runs a slot until it is so.
+/// Runs a slot until `good`.
 fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&mut Slot<Driver>) -> bool) -> bool {
     let end = Instant::now() + Duration::from_secs(5);
     while Instant::now() < end {
@@ -80,7 +80,7 @@ fn until(slot: &mut Slot<Driver>, begin: Instant, good: impl Fn(&mut Slot<Driver
 
 #[test]
 fn every_fault_is_noticed_and_passes_without_a_restart() {
-    // What a busy machine holds up is silent first, whatever else it is: then it was lost for another reason.
+    // A delay by a busy machine shows as silence first, and hides the expected reason.
     judged(|| {
         let (serving, settings) = started(patient());
         let settings = Settings { timeout_s: 0.4, ..settings };

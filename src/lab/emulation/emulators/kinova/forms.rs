@@ -1,10 +1,10 @@
-//! Messages of the services that the driver does not use, as far as the emulated arm looks into them. Field numbers: the `.proto`
-//! files of `Kinovarobotics/ros_kortex`. Angles are in degrees.
+//! Messages of the services that the driver does not use, as far as the emulated arm parses them. Field numbers: the
+//! `.proto` files of `Kinovarobotics/ros_kortex`. Angles are in degrees.
 
 use nima_devices::kinova::messages::{JointAngles, Pose};
 use prost::Message;
 
-/// A reference to something that is kept: an action (with its type between), a sequence, a user, a protection zone.
+/// A reference to a stored entity: an action (with its type between), a sequence, a user, a protection zone.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct Handle {
     #[prost(uint32, tag = "1")]
@@ -150,7 +150,7 @@ pub(super) struct Reals {
     pub(super) values: Vec<f32>,
 }
 
-/// `CompleteProductConfiguration`; what is not told is not known of an emulated arm.
+/// `CompleteProductConfiguration`; fields that are left out do not apply to an emulated arm.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct Product {
     #[prost(string, tag = "1")]
@@ -171,7 +171,7 @@ pub(super) struct Product {
     pub(super) wrist: u32,
 }
 
-/// Identifier and what is set of it: `GPIOState` (value), `GPIOConfiguration` (mode, pull, default), `UARTConfiguration`,
+/// Identifier and settings: `GPIOState` (value), `GPIOConfiguration` (mode, pull, default), `UARTConfiguration`,
 /// `EthernetConfiguration`, `I2CConfiguration`.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct Port {
@@ -225,7 +225,7 @@ pub(super) struct User {
     pub(super) name: String,
 }
 
-/// `FullUserProfile`: the profile as it came, and the password, which is not kept.
+/// `FullUserProfile`: the profile unchanged, and the password, which is not stored.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct NewUser {
     #[prost(bytes = "vec", tag = "1")]

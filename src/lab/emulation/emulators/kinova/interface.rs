@@ -1,5 +1,5 @@
-//! Calls that the emulated arm answers and the driver never makes: ids of the interface (`@PROXY_ID`, `@RPC_ID` in the `.proto`
-//! files of `Kinovarobotics/ros_kortex`), sub error codes, and how a payload is read.
+//! Calls that the emulated arm answers and the driver never makes: ids of the interface (`@PROXY_ID`, `@RPC_ID` in the
+//! `.proto` files of `Kinovarobotics/ros_kortex`), sub error codes, and the parsing of payloads.
 
 use nima_devices::kinova::messages::{ERROR_DEVICE, ERROR_SERVER, Rpc, sub};
 use prost::Message;

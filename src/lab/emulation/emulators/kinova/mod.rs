@@ -1,12 +1,12 @@
-//! An emulated Gen3: sessions, calls and the cycle on the real wire, and a body that follows commands.
+//! An emulated Gen3: sessions, calls and the cycle on the real interface, and a body that follows commands.
 //!
-//! It answers what the manufacturer's examples for an arm with 7 joints call: `Session`, `Base` (servoing, twists, joint speeds,
-//! actions, waypoints, sequences, kinematics, users, protection zones, notifications), `BaseCyclic`, and through the device id of a
-//! request `DeviceManager`, `DeviceConfig`, `ActuatorConfig`, `InterconnectConfig` and `ControlConfig`. Everything else is refused
-//! with the base's error frame.
+//! It answers the calls of the manufacturer's examples for an arm with 7 joints: `Session`, `Base` (servoing, twists,
+//! joint speeds, actions, waypoints, sequences, kinematics, users, protection zones, notifications), `BaseCyclic`, and
+//! through the device id of a request `DeviceManager`, `DeviceConfig`, `ActuatorConfig`, `InterconnectConfig` and
+//! `ControlConfig`. All other calls are refused with the base's error frame.
 //!
-//! Not known of the real arm, and assumed here: the time of the watchdog and the distance that trips a following error. Both are
-//! in [`Emulated`].
+//! Unknown for the real arm, and assumed here: the time of the watchdog and the distance that trips a following error.
+//! Both are in [`Emulated`].
 
 mod actions;
 pub(super) mod alone;
@@ -42,27 +42,26 @@ pub use body::{Asked, Body, BodyState, StandIn};
 
 use crate::emulators::Emulator;
 
-/// How the emulated arm is.
+/// Properties of the emulated arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emulated {
     /// User that may log in.
     pub user: String,
-    /// The user's password.
     pub password: String,
     /// Serial number of its base.
     pub serial: String,
-    /// How many joints it says it has.
+    /// Number of joints that it reports.
     pub joints: u32,
-    /// State that it tells while it is not in fault: 7 ready, 3 initialisation, 5 maintenance.
+    /// State reported while there is no fault: 7 ready, 3 initialisation, 5 maintenance.
     pub idle_state: u32,
-    /// Low level without a command for so long is a fault, ms. An assumption: the manufacturer tells only that "a fair amount of
-    /// jitter" is tolerated (kortex issue 211).
+    /// Time without a low-level command that counts as a fault, ms. An assumption: the manufacturer says only that "a
+    /// fair amount of jitter" is tolerated (kortex issue 211).
     pub watchdog_ms: f64,
-    /// A command so far from the measured angle is a fault, degrees. An assumption.
+    /// Difference between command and measured angle that counts as a fault, degrees. An assumption.
     pub following_error_deg: f64,
-    /// Port of the calls (TCP); 0 takes a free one.
+    /// Port of the calls (TCP); 0 selects a free one.
     pub tcp_port: u16,
-    /// Port of the cycle (UDP); 0 takes a free one.
+    /// Port of the cycle (UDP); 0 selects a free one.
     pub udp_port: u16,
 }
 
@@ -83,7 +82,8 @@ impl Default for Emulated {
 }
 
 impl Emulated {
-    /// With what moves. The endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for [`Settings::at`](nima_devices::kinova::Settings::at).
+    /// Makes the emulator with a body. The endpoint is `127.0.0.1 tcp=PORT udp=PORT`, for
+    /// [`Settings::at`](nima_devices::kinova::Settings::at).
     pub fn with(self, body: impl Body + 'static) -> Box<dyn Emulator> {
         Box::new(wire::Server::new(self, Box::new(body)))
     }

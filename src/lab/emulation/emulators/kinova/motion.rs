@@ -1,7 +1,7 @@
-//! How the emulated base moves the joints by itself: paths that rest in every point, and constant speeds.
+//! Motion of the joints by the emulated base itself: paths that stop at every point, and constant speeds.
 //!
-//! The real base goes to a pose, and from one Cartesian waypoint to the next, on a straight line of the tool; here all paths are
-//! straight lines of the joints.
+//! The real base moves to a pose, and between Cartesian waypoints, on a straight line of the tool; here all paths are
+//! straight lines in joint space.
 
 use std::{collections::VecDeque, f64::consts::PI};
 
@@ -23,7 +23,7 @@ use super::{
 
 pub(super) type Joints = [f64; ARM_JOINTS];
 
-/// The way to one point.
+/// The path to one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leg {
     to_rad: Joints,
@@ -48,7 +48,7 @@ impl Motion {
         matches!(self, Self::Path { .. })
     }
 
-    /// What is asked of the body `elapsed_s` later; `None` when the last point is reached.
+    /// Returns the command `elapsed_s` later; `None` when the last point is reached.
     pub(super) fn step(&mut self, elapsed_s: f64) -> Option<Asked> {
         match self {
             Self::Speeds { goal_rad, rad_s } => {
@@ -72,9 +72,10 @@ impl Motion {
     }
 }
 
-/// The way from one point to another in `wanted_s`, or as fast as the joints can if that is 0.
+/// The path from one point to another in `wanted_s`, or as fast as the joints can if that is 0.
 pub(super) fn leg(from_rad: &Joints, to_rad: Joints, wanted_s: f64) -> Result<Leg, Refused> {
-    // Along half a cosine the greatest speed is pi/2 of the mean one, the greatest acceleration pi^2/2 of way over time squared.
+    // Along half a cosine the maximum speed is pi/2 times the mean speed, the maximum acceleration pi^2/2 times
+    // distance over time squared.
     let shortest = |j: usize| {
         let way = (to_rad[j] - from_rad[j]).abs();
         let by_speed = 0.5 * PI * way / GEN3[j].speed_rad_s;
@@ -91,7 +92,7 @@ impl Leg {
     }
 }
 
-/// Joint angles as a client gives them, in the turn nearest to `near_rad`, within the joints' ranges.
+/// Joint angles of a client, in the turn nearest to `near_rad`, within the joints' ranges.
 pub(super) fn goal(degrees: &[f32], near_rad: &Joints) -> Result<Joints, Refused> {
     let degrees: [f32; ARM_JOINTS] = degrees.try_into().map_err(|_| JOINT_COUNT)?;
     if !degrees.iter().all(|angle| angle.is_finite()) {
@@ -103,7 +104,7 @@ pub(super) fn goal(degrees: &[f32], near_rad: &Joints) -> Result<Joints, Refused
     if inside { Ok(goal) } else { Err(JOINT_LIMIT) }
 }
 
-/// Where to begin the search for joint angles, degrees, if it fails from where the arm is.
+/// Start angles of the search, degrees, if it fails from the current pose.
 const BEGINNINGS_DEG: [Joints; 3] = [
     [0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0],
     [0.0, 45.0, 180.0, -60.0, 0.0, -15.0, 90.0],
@@ -113,7 +114,7 @@ const SEARCH_STEPS: usize = 400;
 const LONGEST_STEP_RAD: f64 = 0.2;
 const CLOSE: f64 = 1e-6;
 
-/// Joint angles that bring the tool to a pose, from the nearest of which the search begins.
+/// Returns joint angles that bring the tool to a pose; the search begins at the nearest start.
 pub(super) fn reach(pose: &Pose, near_rad: &Joints) -> Result<Joints, Refused> {
     let numbers = [pose.x, pose.y, pose.z, pose.theta_x, pose.theta_y, pose.theta_z].map(f64::from);
     if !numbers.iter().all(|x| x.is_finite()) {

@@ -1,4 +1,4 @@
-//! What goes wrong while the driver connects: each has its own cause.
+//! Faults while the driver connects: each has its own cause.
 
 use std::{
     io::{Read as _, Write as _},

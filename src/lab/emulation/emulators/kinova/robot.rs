@@ -1,4 +1,4 @@
-//! The base and its actuators: servoing modes, cyclic commands, faults that stay until they are cleared.
+//! The base and its actuators: servoing modes, cyclic commands, faults that remain until they are cleared.
 
 use nalgebra::Vector3;
 use nima_devices::{
@@ -23,11 +23,11 @@ use super::{
 };
 use crate::emulators::EmulatedFault;
 
-/// Beyond the range that may be commanded the hardware has a little more, rad.
+/// The hardware range exceeds the range of commands by this much, rad.
 const HARDWARE_MARGIN_RAD: f64 = 0.1;
-/// The longest step of the body, s.
+/// Maximum step of the body, s.
 const STEP_S: f64 = 1e-3;
-/// Steps in one call; a longer pause of this process is not caught up.
+/// Maximum steps in one call; a longer pause of this process is skipped.
 const STEPS: usize = 100;
 /// Status bits of a working actuator: indexed, servoing.
 const STATUS_SERVOING: u32 = 0x20 | 0x800;
@@ -40,7 +40,7 @@ pub(super) struct Robot {
     state: BodyState,
     asked: Asked,
     motion: Option<Motion>,
-    /// How the last path ended, until it is taken: at its end, or stopped for this sub error.
+    /// How the last path ended, until it is read: at its end, or stopped with this sub error.
     ended: Option<Obeyed>,
     mode: ServoingMode,
     base_fault: u32,
@@ -53,7 +53,7 @@ pub(super) struct Robot {
     random: fastrand::Rng,
 }
 
-/// A refusal: the sub error of `ERROR_DEVICE`.
+/// A refusal has the sub error of `ERROR_DEVICE`.
 pub(super) type Obeyed = Result<(), u16>;
 
 impl Robot {
@@ -78,7 +78,7 @@ impl Robot {
         }
     }
 
-    /// Lets time go on until `now_s`.
+    /// Advances the time to `now_s`.
     pub(super) fn advance(&mut self, now_s: f64, fault: EmulatedFault) {
         let unheard = self.commanded_s.is_some_and(|heard_s| now_s - heard_s > self.arm.watchdog_ms * 1e-3);
         if self.mode == ServoingMode::Low && unheard && !self.is_faulty() {
@@ -111,7 +111,7 @@ impl Robot {
         }
     }
 
-    /// Ends every motion for this sub error.
+    /// Ends every motion with this sub error.
     fn rest(&mut self, why: u16) {
         self.asked = Asked::Rest;
         if self.motion.take().is_some_and(|motion| motion.is_path()) {
@@ -119,7 +119,7 @@ impl Robot {
         }
     }
 
-    /// How the last path ended; told once.
+    /// Returns once how the last path ended.
     pub(super) const fn take_end(&mut self) -> Option<Obeyed> {
         self.ended.take()
     }
@@ -128,7 +128,7 @@ impl Robot {
         self.base_fault != 0 || self.emulated_fault
     }
 
-    /// Bank A of the base and of a joint; the emulated fault is a torque that joint 3 tells while it is in force.
+    /// Bank A of the base and of a joint; the emulated fault is a torque fault of joint 3 while it is active.
     const fn banks(&self, j: usize) -> (u32, u32) {
         let base = self.base_fault;
         let joint = self.actuator_faults[j];
@@ -147,7 +147,7 @@ impl Robot {
         self.rest(sub::IN_FAULT);
     }
 
-    /// State as `GetArmState` tells it.
+    /// State in `GetArmState`.
     pub(super) fn state(&self) -> u32 {
         if self.is_faulty() {
             ArmState::IN_FAULT.0
@@ -174,14 +174,13 @@ impl Robot {
         Ok(())
     }
 
-    /// Faults whose cause is gone are forgotten.
+    /// Clears the faults whose cause is gone.
     pub(super) const fn clear_faults(&mut self) {
         self.base_fault = 0;
         self.actuator_faults = [0; ARM_JOINTS];
         self.commanded_s = None;
     }
 
-    /// Forgets the faults of one actuator.
     pub(super) fn clear_actuator(&mut self, j: usize) {
         self.actuator_faults[j] = 0;
         if self.base_fault == JOINT_FAULT && self.actuator_faults == [0; ARM_JOINTS] {
@@ -189,12 +188,12 @@ impl Robot {
         }
     }
 
-    /// No motion of the high level any more.
+    /// Stops every high-level motion.
     pub(super) fn stop(&mut self) {
         self.rest(MANUAL_STOP);
     }
 
-    /// The emergency stop, until faults are cleared.
+    /// Emergency stop until faults are cleared.
     pub(super) fn emergency_stop(&mut self) {
         self.base_fault |= EMERGENCY_STOP;
         self.rest(sub::EMERGENCY_STOP);
@@ -210,17 +209,17 @@ impl Robot {
         }
     }
 
-    /// Begins a path from where the arm is.
+    /// Begins a path from the current pose.
     pub(super) fn follow(&mut self, legs: Vec<Leg>) -> Result<(), Refused> {
         self.ready().map_err(|code| (ERROR_DEVICE, code))?;
         self.motion = Some(Motion::path(self.state.joint_rad, legs));
         Ok(())
     }
 
-    /// Moves the joints with these speeds, rad/s, until told otherwise.
+    /// Moves the joints at these speeds, rad/s, until the next command.
     pub(super) fn move_joints(&mut self, rad_s: Joints) -> Result<(), Refused> {
         self.ready().map_err(|code| (ERROR_DEVICE, code))?;
-        // The speed of a joint's limit itself is taken, whatever the wire's degrees make of it.
+        // A speed at a joint's limit is accepted, despite rounding in the wire's degrees.
         if !rad_s.iter().zip(&GEN3).all(|(speed, joint)| speed.abs() <= joint.speed_rad_s * 1.001) {
             return Err(LARGE_SPEED);
         }
@@ -232,7 +231,7 @@ impl Robot {
         Ok(())
     }
 
-    /// What moves the arm (`ControlMode`).
+    /// The active `ControlMode`.
     pub(super) const fn control_mode(&self) -> u32 {
         match (&self.motion, &self.asked) {
             (Some(Motion::Path { .. }), _) => 4,
@@ -263,7 +262,7 @@ impl Robot {
         Ok(())
     }
 
-    /// A cyclic command. Refused outside of low level; without effect in fault.
+    /// Executes a cyclic command. Refused outside low-level servoing; without effect in a fault.
     pub(super) fn command(&mut self, now_s: f64, command: &Command) -> Obeyed {
         if self.mode != ServoingMode::Low {
             return Err(sub::WRONG_SERVOING_MODE);
@@ -276,7 +275,7 @@ impl Robot {
         let mut wanted = if let Asked::Joints(angles) = self.asked { angles } else { self.state.joint_rad };
         let mut faults = [0; ARM_JOINTS];
         for (j, actuator) in command.actuators.iter().take(ARM_JOINTS).enumerate() {
-            // Commands out of their time are thrown away.
+            // Commands out of their time are dropped.
             if actuator.command_id != command.frame_id || actuator.flags & 0x40 != 0 {
                 continue;
             }
@@ -306,12 +305,11 @@ impl Robot {
         faults
     }
 
-    /// How the body is.
     pub(super) const fn body(&self) -> &BodyState {
         &self.state
     }
 
-    /// What a refresh answers.
+    /// Returns the answer to a refresh.
     pub(super) fn told(&mut self, fault: EmulatedFault) -> Feedback {
         let mut actuators: Vec<_> = (0..ARM_JOINTS.min(self.arm.joints as usize)).map(|j| self.actuator(j)).collect();
         if fault == EmulatedFault::NotANumber {

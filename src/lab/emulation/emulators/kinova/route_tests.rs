@@ -1,4 +1,4 @@
-//! The device route and what the base does by itself, over real sockets.
+//! The device route and the base's own motions, over real sockets.
 
 mod actions;
 mod golden;
@@ -25,10 +25,10 @@ use super::{
 use crate::emulators::Serving;
 
 const HOME_DEG: [f64; 7] = [0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0];
-/// Longest wait for an answer or a notification.
+/// Maximum wait for an answer or a notification.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
-/// A client without any knowledge of the emulator.
+/// A client that is independent of the emulator's code.
 struct Client {
     stream: TcpStream,
     packets: PacketReader,

@@ -1,4 +1,4 @@
-//! A value that clients read, set and set back; kept as the bytes of its message.
+//! A value that clients read, set and reset; stored as the bytes of its message.
 
 use prost::Message;
 
@@ -13,11 +13,11 @@ pub(super) struct Setting {
     checked: Check,
 }
 
-/// Tells what an offered value becomes, or why it is refused.
+/// Returns the stored form of an offered value, or why it is refused.
 type Check = Box<dyn Fn(&[u8]) -> Answered + Send>;
 
 impl Setting {
-    /// Read and set by these functions of its service; `fits` tells which values are taken.
+    /// A value read and set by these functions of its service; `fits` returns which values are accepted.
     pub(super) fn new<M>(get: u16, set: u16, initial: &M, fits: fn(&M) -> bool) -> Self
     where
         M: Message + Default + 'static,
@@ -30,7 +30,7 @@ impl Setting {
         Self { get, set, reset: None, value: initial.clone(), initial, checked: Box::new(checked) }
     }
 
-    /// The same, set back by this function.
+    /// Adds the function that resets it.
     pub(super) fn with_reset(self, reset: u16) -> Self {
         Self { reset: Some(reset), ..self }
     }
@@ -40,7 +40,7 @@ impl Setting {
         function == self.set || Some(function) == self.reset
     }
 
-    /// The answer, if the function is one of this value's.
+    /// Returns the answer, if the function belongs to this value.
     pub(super) fn answer(&mut self, function: u16, payload: &[u8]) -> Option<Answered> {
         if function == self.set {
             return Some((self.checked)(payload).map(|value| {

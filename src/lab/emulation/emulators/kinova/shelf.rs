@@ -1,4 +1,5 @@
-//! What clients leave with the base and take again by its handle: users, sequences, protection zones. Kept as the bytes that came.
+//! Entities that clients store in the base and retrieve by handle: users, sequences, protection zones. Stored as the
+//! received bytes.
 
 use prost::{
     Message,
@@ -10,7 +11,7 @@ use super::{
     interface::{Answered, ENTITY_NOT_FOUND, NO_MORE_STORAGE, Refused, read},
 };
 
-/// Most of one kind.
+/// Maximum number of each kind.
 const PLACES: usize = 64;
 /// `Permission`: read, update, delete.
 const ALL: u32 = 7;
@@ -22,14 +23,14 @@ pub(super) struct Shelf {
 }
 
 impl Shelf {
-    /// Keeps a message, whose field 1 becomes its handle.
+    /// Stores a message, whose field 1 becomes its handle.
     pub(super) fn create(&mut self, mut bytes: Vec<u8>) -> Result<Handle, Refused> {
         if self.entries.len() >= PLACES {
             return Err(NO_MORE_STORAGE);
         }
         self.given += 1;
         let handle = Handle { identifier: self.given, permission: ALL };
-        // A message whose field 1 comes twice has the later one.
+        // If field 1 occurs twice in a message, the later one counts.
         append(1, &handle.encode_to_vec(), &mut bytes);
         self.entries.push((self.given, bytes));
         Ok(handle)
@@ -48,7 +49,7 @@ impl Shelf {
         Ok(handle)
     }
 
-    /// Everything, as a message that repeats its field 1.
+    /// Returns all entities, as a message that repeats its field 1.
     pub(super) fn all(&self) -> Vec<u8> {
         let mut list = Vec::new();
         self.entries().for_each(|bytes| append(1, bytes, &mut list));

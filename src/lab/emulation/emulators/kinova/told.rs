@@ -1,4 +1,4 @@
-//! The feedback as a whole, with every field of `BaseCyclic.proto`, written by `prost`: what the driver reads by hand.
+//! The complete feedback with every field of `BaseCyclic.proto`, written by `prost`; the driver parses it by hand.
 
 use prost::Message;
 

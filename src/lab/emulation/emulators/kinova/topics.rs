@@ -1,4 +1,4 @@
-//! What the base tells on its own to those who asked for it.
+//! Notifications of the base to its subscribers.
 
 use nima_devices::kinova::{
     frame::{Header, NOTIFICATION},
@@ -18,7 +18,7 @@ struct Subscription {
     link: Peer,
 }
 
-/// One notification on its way.
+/// One notification to be sent.
 pub(super) struct Notice {
     pub(super) link: Peer,
     pub(super) header: Header,
@@ -33,7 +33,7 @@ pub(super) struct Topics {
 }
 
 impl Topics {
-    /// The number that notifications of this subscription bear.
+    /// Returns the number that notifications of this subscription carry.
     pub(super) fn subscribe(&mut self, topic: Rpc, session: u16, link: Peer) -> Result<u16, Refused> {
         if self.subscriptions.len() >= SUBSCRIPTIONS {
             return Err(NO_MORE_STORAGE);
@@ -43,7 +43,7 @@ impl Topics {
         Ok(self.given)
     }
 
-    /// Only by the session that subscribed.
+    /// Only the session that subscribed may unsubscribe.
     pub(super) fn unsubscribe(&mut self, identifier: u32, session: u16) -> Result<(), Refused> {
         let own = |one: &Subscription| u32::from(one.identifier) == identifier && one.session == session;
         let at = self.subscriptions.iter().position(own).ok_or(ENTITY_NOT_FOUND)?;
@@ -51,7 +51,7 @@ impl Topics {
         Ok(())
     }
 
-    /// Forgets the subscriptions of sessions that are gone.
+    /// Removes the subscriptions of closed sessions.
     pub(super) fn keep(&mut self, is_open: impl Fn(u16) -> bool) {
         self.subscriptions.retain(|one| is_open(one.session));
     }

@@ -1,4 +1,4 @@
-//! The emulated base on its wires: calls over TCP, the cycle over UDP.
+//! The emulated base on its interfaces: calls over TCP, the cycle over UDP.
 
 use std::io;
 
@@ -16,7 +16,7 @@ use crate::emulators::{
 
 pub(super) struct Server {
     base: Base,
-    /// What has arrived from each connection.
+    /// Data received from each connection.
     packets: Vec<(Peer, PacketReader)>,
     frozen: Option<Vec<u8>>,
 }
@@ -41,7 +41,7 @@ impl Server {
         }
     }
 
-    /// The answer on the cyclic connection, spoilt as the fault has it.
+    /// Returns the answer on the cyclic connection, modified by the fault.
     fn datagram(&mut self, from: Peer, asked: &Frame<'_>, turn: &Turn<'_>) -> Vec<u8> {
         let (mut header, payload) = answer(&mut self.base, from, asked, turn.now_s, turn.fault);
         let cyclic = header.service == Rpc::REFRESH.service && header.error == 0;
@@ -54,7 +54,7 @@ impl Server {
             return out;
         }
         match turn.fault {
-            // There is no checksum; a datagram cut short is the nearest.
+            // There is no checksum; a truncated datagram is the nearest equivalent.
             EmulatedFault::BadChecksum => out.truncate(out.len() - 1),
             EmulatedFault::Freeze => return self.frozen.get_or_insert(out).clone(),
             _ => self.frozen = None,
@@ -98,7 +98,7 @@ impl Emulator for Server {
 
     fn pass(&mut self, turn: &mut Turn<'_>) {
         self.base.advance(turn.now_s, turn.fault);
-        // What calls have begun is told behind their answers.
+        // Notifications about a call follow its answer.
         for notice in self.base.notices() {
             send_packed(notice.link, &notice.header, &notice.payload, turn);
         }
@@ -111,7 +111,7 @@ impl Emulator for Server {
     }
 }
 
-/// Header and payload of the answer to a frame.
+/// Returns header and payload of the answer to a frame.
 fn answer(base: &mut Base, link: Peer, asked: &Frame<'_>, now_s: f64, fault: EmulatedFault) -> (Header, Vec<u8>) {
     let answered = if asked.header.kind == REQUEST {
         base.answer(link, asked, now_s, fault)

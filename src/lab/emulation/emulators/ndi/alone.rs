@@ -1,5 +1,5 @@
-//! `nima emulate ndi` (TCP) and `ndi-serial` (pseudo-terminal): the tracker. Setting `firmware` makes hosts choose `TX` or `BX`,
-//! `missing` and `outside` hide one tool or put it out of the volume, `port` takes a fixed TCP port.
+//! `nima emulate ndi` (TCP) and `ndi-serial` (pseudo-terminal): the tracker. Setting `firmware` makes hosts choose `TX`
+//! or `BX`, `missing` and `outside` hide one tool or put it out of the volume, `port` sets a fixed TCP port.
 
 use std::io::Result;
 

@@ -1,4 +1,5 @@
-//! The driver against the emulator over TCP and a pseudo-terminal: readings, line speeds, every trouble that can be had here.
+//! The driver against the emulator over TCP and a pseudo-terminal: readings, baud rates, every fault that can be
+//! provoked here.
 
 use std::{
     io::{Read as _, Write as _},
@@ -20,7 +21,6 @@ use crate::emulators::{
     ndi::{Body, FRAME_HZ, Profile, wandering},
 };
 
-/// Tool definitions as files.
 pub(super) fn definitions(count: usize) -> (tempfile::TempDir, Vec<PathBuf>) {
     let folder = tempfile::tempdir().unwrap();
     let paths = (0..count).map(|k| {
@@ -69,7 +69,7 @@ pub(super) fn line(served: &Serving, tools: Vec<PathBuf>) -> Settings {
     Settings { port: Some(served.endpoint.clone()), tools, ..Settings::default() }
 }
 
-/// What a driver reads in its first second.
+/// Returns a driver's readings in its first second.
 fn attempt(settings: &Settings, form: Form) -> (Health, Vec<Stamped<TrackerReading>>) {
     let mut driver = Driver::open(settings).unwrap();
     assert_eq!(driver.form(), form);
@@ -89,8 +89,8 @@ fn attempt(settings: &Settings, form: Form) -> (Health, Vec<Stamped<TrackerReadi
     (*driver.health(), readings)
 }
 
-/// Readings of the first second agree with the body, frame by frame. How many are lost is a matter of the machine's load: none on
-/// an idle one, and no more than a tenth is let pass here.
+/// Checks that the readings of the first second agree with the body, frame by frame. The number of lost frames depends
+/// on the machine's load: none on an idle one; at most a tenth is accepted here.
 fn follows(settings: &Settings, form: Form, within_m: f64) {
     // A machine that stalls for a tenth of a second makes a tracker silent: a second and a third attempt are allowed.
     let attempts = (0..3).map(|_| attempt(settings, form));
@@ -151,7 +151,7 @@ fn over_a_line_text_arrives_as_often_as_the_line_carries_it() {
     });
 }
 
-/// Says one command at `baud` and waits for its reply, as another program would.
+/// Sends one command at `baud` and waits for its reply, like another program.
 fn say(endpoint: &str, baud: u32, command: &Command<'_>) -> String {
     let mut port = serialport::new(endpoint, baud).timeout(Duration::from_secs(1)).open_native().unwrap();
     port.write_all(command.encode().as_bytes()).unwrap();
@@ -161,7 +161,7 @@ fn say(endpoint: &str, baud: u32, command: &Command<'_>) -> String {
         port.read_exact(&mut byte).unwrap();
         reply.push(byte[0]);
     }
-    // The unit changes its speed after the reply.
+    // The unit changes its baud rate after the reply.
     std::thread::sleep(Duration::from_millis(20));
     String::from_utf8(reply).unwrap()
 }
@@ -289,7 +289,7 @@ fn dropping_it_stops_tracking() {
         let begin = Instant::now();
         assert!(until(begin, 1.0, |now_s| driver.poll(now_s), |reading| reading.is_some()));
         drop(driver);
-        // Whoever comes next is answered as by a unit that does not track.
+        // The next client is answered as by a unit that does not track.
         let mut stream = std::net::TcpStream::connect(&served.endpoint).unwrap();
         stream.write_all(b"TX 0801\r").unwrap();
         let mut reply = [0; 12];
@@ -298,7 +298,7 @@ fn dropping_it_stops_tracking() {
     });
 }
 
-/// Somebody on TCP who says `reply` to everything.
+/// A TCP server that sends `reply` to everything.
 fn stranger(reply: &'static [u8]) -> (String, std::thread::JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();

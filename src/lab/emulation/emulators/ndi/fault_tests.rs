@@ -1,4 +1,4 @@
-//! Every emulated fault, on the driver in its slot: what it does, and that the tracker comes back without a restart.
+//! Every emulated fault, on the driver in its slot: its effect, and the tracker's recovery without a restart.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use nima_testing::real_time::judged;
 use super::driver_tests::{BLOCK_FIRMWARE, TEXT_FIRMWARE, definitions, line, network, profile, until};
 use crate::emulators::{EmulatedFault, Serving, ndi::wandering};
 
-/// What a fault does to the driver.
+/// Effect of a fault on the driver.
 #[derive(Debug)]
 enum Outcome {
     Lost(&'static [Loss]),
@@ -41,7 +41,7 @@ fn outcome(fault: EmulatedFault) -> Outcome {
     }
 }
 
-/// Sets one fault on a slot that delivers, sees what it does, takes it back, and sees it deliver again.
+/// Sets one fault on a working slot, checks its effect, removes the fault, and checks that the slot recovers.
 fn survives(fault: EmulatedFault, form: Form, served: &Serving, slot: &mut Slot<Driver>, begin: Instant) {
     let delivering = |slot: &mut Slot<Driver>| until(begin, 5.0, |now_s| slot.poll(now_s), |reading| reading.is_some());
     assert!(delivering(slot), "before {fault:?}");
@@ -50,7 +50,7 @@ fn survives(fault: EmulatedFault, form: Form, served: &Serving, slot: &mut Slot<
     served.faults.set(fault);
     let outcome = outcome(fault);
     let shown = std::cell::Cell::new(false);
-    // In noise a good reply comes now and then; the loss needs its time.
+    // Within noise a good reply arrives occasionally, so the loss takes some time.
     until(
         begin,
         4.0,

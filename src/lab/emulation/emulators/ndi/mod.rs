@@ -1,9 +1,11 @@
-//! An emulated unit on its real wire: TCP or a pseudo-terminal, fed by a body that says where the tools are.
+//! An emulated unit on its real interface: TCP or a pseudo-terminal, fed by a body that provides the poses of the
+//! tools.
 //!
-//! It takes both forms of commands, keeps the unit's modes (not initialised, set up, tracking) with its error codes, counts frames
-//! at 60 Hz and sends each reply in one write. On the pseudo-terminal it keeps the line's speed: what is sent at another speed
-//! than its own is not understood, and commands and replies take the line for as long as their bytes need. A pseudo-terminal carries
-//! no break; setting its speed to 9600 while the unit has another stands for one.
+//! It accepts both forms of commands, implements the unit's modes (not initialised, set up, tracking) with its error
+//! codes, counts frames at 60 Hz and sends each reply in one write. On the pseudo-terminal it emulates the baud rate:
+//! data sent at a different rate are not understood, and commands and replies occupy the line for as long as their
+//! bytes need. A pseudo-terminal cannot carry a break; setting its rate to 9600 while the unit has another one counts
+//! as a break.
 
 pub(super) mod alone;
 #[cfg(test)]
@@ -19,20 +21,21 @@ use nima_devices::{Tracked, ndi::words::SystemStatus};
 
 pub use unit::{Answer, Unit};
 
-/// Frames of the emulated unit, Hz.
+/// Frame rate of the emulated unit, Hz.
 pub const FRAME_HZ: f64 = 60.0;
 
-/// What the simulated world says to the unit. Called on the emulator's thread.
+/// The simulated world as seen by the unit. Called on the emulator's thread.
 pub trait Body: Send {
-    /// Where the tool with this number (in the order in which its handle was asked for) is at this time of the unit, s.
+    /// Returns the pose of the tool with this number (in the order in which its handle was requested) at this time of
+    /// the unit, s.
     fn tool(&mut self, unit_s: f64, number: usize) -> Tracked;
 
-    /// How the unit is.
+    /// Returns the status of the unit.
     fn system(&mut self) -> SystemStatus {
         SystemStatus::default()
     }
 
-    /// The unit beeps.
+    /// Called when the unit beeps.
     fn beep(&mut self, _times: u8) {}
 }
 
@@ -42,12 +45,11 @@ impl<F: FnMut(f64, usize) -> Tracked + Send> Body for F {
     }
 }
 
-/// What the emulated unit says it is.
+/// Identity of the emulated unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Profile {
     /// Product, as in the first line of its version text.
     pub product: String,
-    /// Serial number.
     pub serial: String,
     /// Freeze tag, by which hosts choose between `TX` and `BX`.
     pub firmware: String,
@@ -63,7 +65,7 @@ impl Default for Profile {
     }
 }
 
-/// Alone, without a world: the tools circle slowly 1.5 m before the camera, 0.2 m apart.
+/// Standalone, without a world: the tools circle slowly 1.5 m in front of the camera, 0.2 m apart.
 pub fn wandering(unit_s: f64, number: usize) -> Tracked {
     let turn = 0.5 * unit_s + number as f64;
     let centre = Vector3::new(-0.3 + 0.2 * number as f64, 0.0, -1.5);

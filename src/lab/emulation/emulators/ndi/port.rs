@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nima_devices::ndi::{definition::DEFINITION, words::PortStatus};
 
-/// What the unit knows of one handle.
+/// The unit's state of one handle.
 #[derive(Clone, Debug)]
 pub(super) struct Port {
     pub(super) handle: u8,
@@ -16,7 +16,6 @@ pub(super) struct Port {
 }
 
 impl Port {
-    /// Its status bits.
     pub(super) fn status(&self) -> u32 {
         let bit = |on, bit| if on { bit } else { 0 };
         bit(self.written, PortStatus::OCCUPIED)
@@ -25,7 +24,7 @@ impl Port {
     }
 }
 
-/// `PHINF` by its option bits, in their order (reference 1.3).
+/// Returns the answer to `PHINF` for its option bits, in their order (reference 1.3).
 pub(super) fn information(port: &Port, options: u16) -> String {
     let mut text = String::new();
     let status = port.status() & 0xFF;

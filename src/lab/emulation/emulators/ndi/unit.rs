@@ -1,4 +1,4 @@
-//! The unit itself, without input and output: a command line in, a reply out.
+//! The unit itself, without I/O: takes a command line, returns a reply.
 
 use nima_devices::{
     Tracked,
@@ -19,13 +19,13 @@ use crate::emulators::EmulatedFault;
 
 /// Handle of the first wireless tool.
 const FIRST_HANDLE: u8 = 0x0A;
-/// Tools that can be defined at once.
+/// Maximum number of defined tools.
 const HANDLES: usize = 12;
-/// Speed after switching on.
+/// Baud rate after power-up.
 pub(super) const FIRST_BAUD: u32 = 9600;
-/// As real units say it; hosts that look for a unit want at least 84 bytes.
+/// In the form of real units; hosts that search for a unit expect at least 84 bytes.
 const FIRMWARE_INFO: &str = "Features.Firmware.Version=007.000.012;3;1;0;12;;Current firmware revision number";
-/// User parameters that can be read.
+/// Readable user parameters.
 const PARAMETERS: [(&str, &str); 4] = [
     ("Features.Firmware.Version", "007.000.012"),
     ("Info.Timeout.INIT", "5"),
@@ -33,16 +33,16 @@ const PARAMETERS: [(&str, &str); 4] = [
     ("Info.Timeout.TSTART", "5"),
 ];
 
-/// A reply, and what follows it.
+/// A reply, and its consequence.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Answer {
-    /// The reply as it goes over the wire.
+    /// The bytes of the reply on the wire.
     pub bytes: Vec<u8>,
-    /// The speed of the line after the reply, bit/s.
+    /// Baud rate of the line after the reply, bit/s.
     pub then_baud: Option<u32>,
 }
 
-/// The modes of a unit and what it knows.
+/// The mode and state of a unit.
 #[derive(Debug)]
 pub struct Unit {
     profile: Profile,
@@ -65,30 +65,29 @@ enum Reply {
 }
 
 impl Unit {
-    /// A unit just switched on; `network` where it has no serial line.
+    /// A unit that has just been switched on; `network` if it has no serial port.
     pub fn new(profile: Profile, network: bool) -> Self {
         let ports = Vec::new();
         Self { profile, network, ports, initialised: false, tracking: false, zero_s: 0.0, frozen_s: None, asked: 0 }
     }
 
-    /// It tracks.
     pub const fn is_tracking(&self) -> bool {
         self.tracking
     }
 
-    /// Bytes written as the definition of this tool, by its number.
+    /// Returns the bytes written as the definition of this tool, by its number.
     pub fn definition(&self, number: usize) -> Option<&[u8]> {
         self.ports.iter().find(|port| port.number == number && port.written).map(|port| &port.definition[..])
     }
 
-    /// What it says after a reset.
+    /// Returns the reply to a reset.
     pub fn reset(&mut self) -> Answer {
         *self = Self { zero_s: self.zero_s, ..Self::new(self.profile.clone(), self.network) };
         Answer { bytes: line("RESET"), then_baud: Some(FIRST_BAUD) }
     }
 
-    /// Answers a line (without its CR) at `unit_s`, time of the unit in s. What fails is answered by an error; of the faults, those of
-    /// meaning are obeyed.
+    /// Answers a line (without its CR) at `unit_s`, time of the unit in s. A failed command is answered with an error;
+    /// faults of the content are applied here.
     pub fn answer(&mut self, unit_s: f64, text: &[u8], fault: EmulatedFault, body: &mut dyn Body) -> Answer {
         let command = if text.len() < COMMAND_MAX { Command::parse(text) } else { Err(ErrorCode::TOO_LONG) };
         let mut then_baud = None;
@@ -114,11 +113,11 @@ impl Unit {
     fn spoil(&self, bytes: &mut Vec<u8>, fault: EmulatedFault) {
         match fault {
             EmulatedFault::BadChecksum => {
-                // The last byte of a line is its CR, before it stands the checksum.
+                // The last byte of a line is its CR, preceded by the checksum.
                 let place = if bytes.ends_with(b"\r") { bytes.len() - 2 } else { bytes.len() - 1 };
                 bytes[place] = if bytes[place] == b'0' { b'1' } else { b'0' };
             }
-            // Right by its checksum, and no reply to anything.
+            // The checksum is right, but the reply does not match the command.
             EmulatedFault::WrongFrame if self.tracking && bytes.starts_with(&[0xC4]) => {
                 *bytes = block_of(b"\x01\x0A\x01");
             }
@@ -174,7 +173,7 @@ impl Unit {
         }
     }
 
-    /// The modes in which a command is possible.
+    /// Checks that a command is allowed in the current mode.
     const fn permitted(&self, command: &Command<'_>) -> Result<(), ErrorCode> {
         let anytime = matches!(
             command,
@@ -229,7 +228,7 @@ impl Unit {
         self.ports.iter_mut().find(|port| port.handle == handle).ok_or(ErrorCode::INVALID_HANDLE)
     }
 
-    /// The commands that concern handles.
+    /// Executes the commands on handles.
     fn obey_port(&mut self, command: &Command<'_>) -> Result<Reply, ErrorCode> {
         match *command {
             Command::Handles(filter) => Ok(Reply::Line(self.list(filter))),
@@ -319,7 +318,7 @@ impl Unit {
         })
     }
 
-    /// Number of the frame at this time.
+    /// Returns the number of the frame at this time.
     fn frame_at(&mut self, unit_s: f64, fault: EmulatedFault) -> u64 {
         self.asked = self.asked.wrapping_add(1);
         let now_s = if fault == EmulatedFault::Freeze { *self.frozen_s.get_or_insert(unit_s) } else { unit_s };
@@ -327,11 +326,11 @@ impl Unit {
             self.frozen_s = None;
         }
         let frame = ((now_s - self.zero_s) * FRAME_HZ).max(0.0) as u64;
-        // Every other reply tells of a frame before the last.
+        // Every other reply contains an older frame.
         if fault == EmulatedFault::Reorder && self.asked % 2 == 1 { frame.saturating_sub(2) } else { frame }
     }
 
-    /// The tools at the time of a frame, so that the same frame always tells the same.
+    /// Returns the tools at the time of a frame; the same frame always gives the same result.
     fn frames(&self, frame: u64, fault: EmulatedFault, body: &mut dyn Body) -> Frames {
         let at_s = self.zero_s + frame as f64 / FRAME_HZ;
         let mut system = body.system();
@@ -349,7 +348,7 @@ impl Unit {
     }
 }
 
-/// On the wire, with the status bits that belong to it; `None` for a tool that is not there.
+/// Returns the wire form, with its status bits; `None` for a missing tool.
 fn sight_of(tracked: &Tracked, fault: EmulatedFault) -> Option<(Sight, u32)> {
     match tracked {
         Tracked::Absent => None,
@@ -360,7 +359,7 @@ fn sight_of(tracked: &Tracked, fault: EmulatedFault) -> Option<(Sight, u32)> {
         Tracked::Seen { c_from_tool, position_in_c_m, error_m, at_the_edge } => {
             let q = c_from_tool.quaternion();
             let bad = fault == EmulatedFault::NotANumber;
-            // In ASCII there is no such number; a quaternion of zeros is as impossible.
+            // ASCII cannot express such a number; a quaternion of zeros is just as impossible.
             let quaternion = if bad { [f64::NAN; 4] } else { [q.w, q.i, q.j, q.k] };
             let translation_mm = (position_in_c_m * 1e3).into();
             let transform = Transform { quaternion, translation_mm, error_mm: error_m * 1e3 };
@@ -373,7 +372,6 @@ fn known(name: &str) -> Option<&'static str> {
     PARAMETERS.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
 }
 
-/// An ASCII reply.
 fn line(text: &str) -> Vec<u8> {
     let mut reply = text.as_bytes().to_vec();
     finish_line(&mut reply);

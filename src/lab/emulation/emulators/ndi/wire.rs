@@ -1,4 +1,4 @@
-//! The unit on its wires.
+//! The unit on its interfaces.
 
 use std::{io, path::PathBuf};
 
@@ -10,26 +10,26 @@ use crate::emulators::{
     wires::{tcp_for_one, terminal},
 };
 
-/// From the speed being set to 9600, which stands for a break, to the unit's answer, s: hosts flush in between.
+/// Time from setting the rate to 9600, which counts as a break, to the unit's answer, s: hosts flush in between.
 const RESET_S: f64 = 0.300;
 /// Bits on the line per byte.
 const BITS: f64 = 10.0;
 
 impl Profile {
-    /// Such a unit on TCP; `port` 0 takes a free one. The newest connection is the one that is answered.
+    /// Serves such a unit on TCP; `port` 0 selects a free one. The newest connection is answered.
     pub fn on_network(self, port: u16, body: impl Body + 'static) -> Box<dyn Emulator> {
         let hearing = Hearing::new(self, true, Box::new(body));
         Box::new(Network { port, hearing })
     }
 
-    /// Such a unit on a pseudo-terminal: `link`, or one in a folder of its own.
+    /// Serves such a unit on a pseudo-terminal: at `link`, or in its own folder.
     pub fn on_line(self, link: Option<PathBuf>, body: impl Body + 'static) -> Box<dyn Emulator> {
         let hearing = Hearing::new(self, false, Box::new(body));
         Box::new(Line { link, hearing, baud: FIRST_BAUD, taken_s: 0.0, due: None, reset_s: None })
     }
 }
 
-/// A unit, and what arrives for it.
+/// A unit, and its input buffer.
 struct Hearing {
     unit: Unit,
     body: Box<dyn Body>,
@@ -41,10 +41,10 @@ impl Hearing {
         Self { unit: Unit::new(profile, network), body, command: Vec::with_capacity(COMMAND_MAX) }
     }
 
-    /// Takes one byte; the answer once it ends a command.
+    /// Processes one byte; returns the answer if the byte completes a command.
     fn hear(&mut self, byte: u8, turn: &Turn<'_>) -> Option<Answer> {
         if byte != b'\r' {
-            // What is too long stays so, and is refused.
+            // A command that is too long keeps its maximum length, and is refused.
             if self.command.len() < COMMAND_MAX {
                 self.command.push(byte);
             }
@@ -56,7 +56,7 @@ impl Hearing {
     }
 }
 
-/// Sends a reply, in one write. What reorder means for a unit that is asked is done by the unit: an older frame.
+/// Sends a reply in one write. The fault of reordering is applied by the unit, which returns an older frame.
 fn say(reply: &[u8], turn: &mut Turn<'_>) {
     if turn.fault == EmulatedFault::Reorder {
         turn.send_unspoilt(Peer::Everyone, reply);
@@ -93,17 +93,17 @@ impl Emulator for Network {
 struct Line {
     link: Option<PathBuf>,
     hearing: Hearing,
-    /// Speed of the unit's side of the line, bit/s.
+    /// Baud rate of the unit's side, bit/s.
     baud: u32,
-    /// Until when the last reply takes the line, s.
+    /// Until when the last reply occupies the line, s.
     taken_s: f64,
-    /// What the line says once the bytes of the command have had their time.
+    /// The reply to be sent once the bytes of the command have had their time.
     due: Option<(f64, Answer)>,
     reset_s: Option<f64>,
 }
 
 impl Line {
-    /// A pseudo-terminal carries no break: the host's speed falling to the first one stands for it.
+    /// A pseudo-terminal cannot carry a break: the host's change to the initial rate counts as one.
     fn watch_break(&mut self, now_s: f64, host: Option<u32>) {
         if self.baud == FIRST_BAUD || host != Some(FIRST_BAUD) {
             self.reset_s = None;
@@ -123,16 +123,18 @@ impl Emulator for Line {
     }
 
     fn hear(&mut self, _: Peer, bytes: &[u8], turn: &mut Turn<'_>) {
-        // At another speed the bytes are none for the unit.
+        // At another baud rate the bytes are not received.
         for byte in bytes.iter().filter(|_| turn.baud == Some(self.baud)) {
-            // The unit speaks or listens: what comes before its reply is out is lost, so that no flood of questions takes the line for long.
+            // The unit is half duplex: bytes that arrive before its reply is out are lost, so that a flood of requests
+            // does not occupy the line for long.
             if self.due.is_some() {
                 break;
             }
             let length = self.hearing.command.len() + 1;
             if let Some(answer) = self.hearing.hear(*byte, turn) {
                 let took_s = |bytes: usize| bytes as f64 * BITS / f64::from(self.baud);
-                // The reply is written at once when its first byte would come; the line is taken until its last one has passed.
+                // The reply is written as a whole when its first byte is due; the line is occupied until its last byte
+                // has passed.
                 let due_s = turn.now_s.max(self.taken_s) + took_s(length);
                 self.taken_s = due_s + took_s(answer.bytes.len());
                 self.due = Some((due_s, answer));
@@ -168,7 +170,8 @@ mod tests {
 
     use super::{super::wandering, *};
 
-    /// At the line's first speed each reply to nothing takes 15 ms: twenty thousand would keep the unit speaking for minutes.
+    /// At the initial baud rate each reply to an empty command takes 15 ms: twenty thousand would keep the unit sending
+    /// for minutes.
     #[test]
     fn a_flood_of_empty_commands_takes_the_line_for_no_longer_than_a_reply() {
         judged(|| {
@@ -177,7 +180,7 @@ mod tests {
             let begin = Instant::now();
             let mut rest = 20_000_usize;
             while rest > 0 && begin.elapsed() < Duration::from_mins(1) {
-                // A full line takes none.
+                // A full buffer accepts no more.
                 let flood = [b'\r'; 64];
                 rest = rest.saturating_sub(if host.send(&flood).is_ok() { flood.len() } else { 0 });
                 host.receive(&mut [0; 4096]).unwrap();
@@ -188,7 +191,7 @@ mod tests {
             let mut heard = Vec::new();
             while !String::from_utf8_lossy(&heard).contains("Polaris Vega") {
                 assert!(begin.elapsed() < Duration::from_secs(30), "{}", String::from_utf8_lossy(&heard));
-                // What is asked while the unit speaks is lost.
+                // A request during the unit's reply is lost.
                 host.send(b"VER 0\r").unwrap();
                 for _ in 0..500 {
                     let mut buffer = [0; 4096];

@@ -1,4 +1,4 @@
-//! Connections, wherever they come from; TCP on this computer's network.
+//! Connections from any source; TCP on this computer's network.
 
 #[cfg(unix)]
 use std::os::fd::{AsRawFd, RawFd};
@@ -10,38 +10,38 @@ use std::{
 use super::{Arrival, End, Peer};
 use crate::emulators::places::taken;
 
-/// A TCP port of this computer; 0 takes a free one. A client that does not take what it is sent is cut off.
+/// A TCP port of this computer; 0 selects a free one. A client that does not read its data is disconnected.
 pub(in crate::emulators) fn tcp(port: u16) -> Box<dyn End> {
     Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), false))
 }
 
-/// The same for one client at a time: the next one takes its place.
+/// The same for one client at a time: the next client replaces it.
 pub(in crate::emulators) fn tcp_for_one(port: u16) -> Box<dyn End> {
     Box::new(Connections::new(Port((Ipv4Addr::LOCALHOST, port).into()), true))
 }
 
-/// What can be waited for together with others.
+/// A descriptor that can be waited for together with others.
 #[cfg(unix)]
 pub(super) trait Waited: AsRawFd {}
 #[cfg(unix)]
 impl<T: AsRawFd> Waited for T {}
-/// Other systems wait for one thing only (see `wait`).
+/// Other systems can wait for one descriptor only (see `wait`).
 #[cfg(not(unix))]
 pub(super) trait Waited {}
 #[cfg(not(unix))]
 impl<T> Waited for T {}
 
-/// Where connections come from.
+/// A source of connections.
 pub(super) trait Place: Send {
     type Listener: Send + Waited;
     type Stream: Send + Waited + Read + Write;
-    /// What a client does not take is lost; else the client is.
+    /// Whether unread data are dropped; otherwise the client is disconnected.
     const LOSES: bool;
 
     fn endpoint(&self) -> String;
     fn listen(&mut self) -> io::Result<Self::Listener>;
     fn accept(listener: &Self::Listener) -> io::Result<Self::Stream>;
-    /// Nobody listens there any more.
+    /// Called when listening ends.
     fn leave(&self) {}
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Connections<P: Place> {
     listener: Option<P::Listener>,
     clients: Vec<Client<P::Stream>>,
     accepted: u64,
-    /// Which client is asked next.
+    /// The client to be served next.
     next: usize,
 }
 
@@ -94,7 +94,7 @@ impl<P: Place> End for Connections<P> {
             self.clients.push(Client { peer, stream, alive: true });
             return Some(Arrival::Came(peer, 0));
         }
-        // Each in its turn: one that sends much keeps no other waiting.
+        // In turn, so that a client that sends much data does not delay the others.
         for _ in 0..self.clients.len() {
             let at = self.next % self.clients.len();
             self.next = at + 1;

@@ -10,7 +10,7 @@ use std::{
 use super::{Arrival, End, Peer};
 use crate::emulators::places::taken;
 
-/// A UDP port of this computer; 0 takes a free one.
+/// A UDP port of this computer; 0 selects a free one.
 pub(in crate::emulators) fn udp(port: u16) -> Box<dyn End> {
     Box::new(Datagrams { address: (Ipv4Addr::LOCALHOST, port).into(), socket: None })
 }
@@ -46,7 +46,7 @@ impl End for Datagrams {
 
     fn send(&mut self, to: Peer, bytes: &[u8]) {
         if let (Some(socket), Peer::Address(to)) = (&self.socket, to) {
-            // A closed port answers with an error that concerns nobody here.
+            // A closed port returns an error, which does not matter here.
             socket.send_to(bytes, to).ok();
         }
     }

@@ -14,7 +14,8 @@ use crate::emulators::places::socket_path;
 
 type Listen = fn(&Path) -> io::Result<UnixListener>;
 
-/// A socket at `path`, made by `listen`; without a path, at `name` in a folder of its own. What a client does not read is lost.
+/// A socket at `path`, opened by `listen`; without a path, at `name` in its own folder. Data that a client does not
+/// read are dropped.
 pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: Listen) -> io::Result<Box<dyn End>> {
     let (path, folder) = socket_path(path, name)?;
     Ok(Box::new(Connections::new(SocketPath { path, _folder: folder, listen }, false)))
@@ -22,7 +23,7 @@ pub(in crate::emulators) fn socket(path: Option<&Path>, name: &str, listen: List
 
 struct SocketPath {
     path: PathBuf,
-    /// The folder of its own, where no place was asked for.
+    /// Its own folder, if no path was requested.
     _folder: Option<tempfile::TempDir>,
     listen: Listen,
 }

@@ -1,4 +1,4 @@
-//! A pseudo-terminal behind a name that stays when the line is cut and comes back.
+//! A pseudo-terminal behind a name that persists when the connection is cut and restored.
 
 use std::{
     fs::File,
@@ -14,11 +14,11 @@ use serialport::{SerialPort as _, TTYPort};
 use super::{Arrival, End, Peer};
 use crate::emulators::places::TerminalName;
 
-/// Between two looks at what clients left set on a line.
+/// Interval between checks for settings that clients left on a terminal.
 const TIDY: Duration = Duration::from_millis(250);
 
-/// A terminal at `link`; without one, at `name` in a folder of its own. With a speed (bit/s) the line is set to it and outlives its
-/// clients; without one every client that opens it is told of.
+/// A terminal at `link`; without one, at `name` in its own folder. With a baud rate (bit/s) the terminal is set to it
+/// and outlives its clients; without one every client that opens it is reported.
 pub(in crate::emulators) fn terminal(link: Option<&Path>, name: &str, baud: Option<u32>) -> io::Result<Box<dyn End>> {
     Ok(Box::new(Terminal { name: TerminalName::claim(link, name)?, baud, line: None }))
 }
@@ -33,11 +33,11 @@ struct Line {
     near: TTYPort,
     bytes: File,
     far: Option<Far>,
-    /// A client has the line open, or we hold it open for all.
+    /// Whether a client has the terminal open, or we keep it open for all.
     present: bool,
 }
 
-/// The clients' end, held open.
+/// The clients' end, kept open.
 struct Far {
     port: TTYPort,
     lock: File,
@@ -45,8 +45,8 @@ struct Far {
 }
 
 impl Far {
-    /// A client that took the terminal for itself alone and is gone leaves it so. Freeing it takes a shared lock, which would keep the
-    /// next client out.
+    /// A client that locked the terminal and has closed it leaves the lock. Removing it takes a shared lock, which
+    /// would keep the next client out.
     fn tidy(&mut self) {
         if self.tidied.elapsed() > TIDY {
             self.port.set_exclusive(false).ok();
@@ -97,7 +97,7 @@ impl End for Terminal {
         let read = match line.bytes.read(buffer) {
             Ok(count) => Some(count),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Some(0),
-            // Nobody has the other end open.
+            // No client has the other end open.
             Err(_) => None,
         };
         let before = std::mem::replace(&mut line.present, read.is_some());
@@ -111,7 +111,7 @@ impl End for Terminal {
 
     fn send(&mut self, to: Peer, bytes: &[u8]) {
         if let Some(line) = self.line.as_mut().filter(|line| line.present && to == Peer::Everyone) {
-            // What does not fit is lost, as on a real line that nobody reads.
+            // Data that do not fit are lost, as on a real serial port without a reader.
             let _lost = line.bytes.write(bytes);
         }
     }

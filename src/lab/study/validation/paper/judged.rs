@@ -1,4 +1,4 @@
-//! What the paper's recipe says of a recording: inside the window that it was fitted to, and at the horizon.
+//! Results of the paper's recipe on a recording: inside the window that it was fitted to, and at the horizon.
 
 use nalgebra::Vector3;
 use nima_core::impedance::{Choice, Identifier, Mode, ModeSet, Reading, Recipe, Settings};
@@ -14,7 +14,7 @@ pub const DELAYS_S: [f64; 4] = [0.01, 0.05, 0.1, 0.3];
 /// The recipe as printed.
 pub const PRINTED: Recipe =
     Recipe { reading: Reading::Increments, choice: Choice::Window, constant: false, ridge: 0.0 };
-/// Ways to read it, from the printed one to the one that can be used.
+/// Interpretations of the recipe, from the printed one to the usable one.
 pub const RECIPES: [(&str, Recipe); 5] = [
     ("as printed", PRINTED),
     ("choice = next", Recipe { choice: Choice::Next, ..PRINTED }),
@@ -22,30 +22,30 @@ pub const RECIPES: [(&str, Recipe); 5] = [
     ("and ridge = 0.003", REPAIRED),
     ("and displacement", Recipe { reading: Reading::Displacement, ..REPAIRED }),
 ];
-/// With all that cures it but the reading.
+/// With all corrections except the interpretation.
 pub const REPAIRED: Recipe = Recipe { choice: Choice::Next, constant: true, ridge: 3e-3, ..PRINTED };
 
-/// Figures inside the window: the fits judged on the newest sample of the window that they were made from, all axes alike.
+/// Results inside the window: fits judged on the newest sample of their own window, all axes alike.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct InWindow {
     /// The degree chosen by the error in the window, as the paper does.
     pub nonlinear: Figures,
     /// Degree 1.
     pub linear: Figures,
-    /// The first with displacements in place of increments.
+    /// `nonlinear` with displacements instead of increments.
     pub displacement: Figures,
-    /// How much less the first is than the second.
+    /// Relative reduction from `linear` to `nonlinear`.
     pub less: f64,
-    /// Share of windows for which a degree above 1 is chosen by the error in the window.
+    /// Fraction of windows for which a degree above 1 is chosen by the error in the window.
     pub window_share: f64,
-    /// The same where each degree is judged over the 10 ms after its window.
+    /// The same if each degree is judged over the 10 ms after its window.
     pub next_share: f64,
 }
 
-/// Errors at the horizon with one way to read the recipe.
+/// Prediction errors at the horizon with one interpretation of the recipe.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct AtHorizon {
-    /// What is changed.
+    /// The changed part.
     pub name: &'static str,
     /// The keys of a rig file.
     pub recipe: Recipe,
@@ -53,23 +53,19 @@ pub struct AtHorizon {
     pub delay_s: f64,
     /// Force of the literal mode.
     pub literal: Figures,
-    /// The delayed force, as it came.
+    /// The delayed force, unmodified.
     pub dfr: Figures,
     /// Stiffness in the fit (the coefficient of `u`, the largest of the axes, 99th percentile over the windows), N/m.
     pub stiffness_p99_n_m: f64,
 }
 
-/// Everything about one recording.
 #[derive(Clone, Debug, Serialize)]
 pub struct Judged {
-    /// Inside the window.
     pub in_window: InWindow,
-    /// At the horizon, for each way to read the recipe and each delay.
+    /// At the horizon, for each interpretation of the recipe and each delay.
     pub at_horizon: Vec<AtHorizon>,
 }
 
-/// Judges a recording.
-///
 /// # Errors
 /// [`ValidationError`] if its rate or its axes are out of range.
 pub fn judge(recording: &Recording) -> Result<Judged, ValidationError> {
@@ -105,7 +101,6 @@ fn identify(
     Ok(())
 }
 
-/// Errors of all axes in use.
 #[derive(Default)]
 struct Errors([ErrorStats; 3]);
 
@@ -116,7 +111,7 @@ impl Errors {
         }
     }
 
-    /// Mean absolute error and standard deviation over the axes of this recording taken together.
+    /// Mean absolute error and standard deviation over all axes of this recording together.
     fn figures(&self, recording: &Recording) -> Figures {
         let count = recording.axes.len().max(1) as f64;
         let mean = |of: fn(&ErrorStats) -> f64| self.0[..recording.axes.len()].iter().map(of).sum::<f64>() / count;
@@ -173,7 +168,7 @@ pub(super) fn horizon(
         if model.degree > 0 {
             stiffness.push(model.coefficients[0].0.iter().fold(0.0_f64, |most, m| m.abs().max(most)));
         }
-        // Before anything has arrived there is nothing to judge; a mode that renders nothing errs by the whole force.
+        // Before the first data arrive there is nothing to judge; a mode that renders nothing errs by the whole force.
         let report = identifier.report();
         if let Some(delayed_n) = report.prediction(Mode::Dfr) {
             dfr.add(&(delayed_n - measured_n));
@@ -187,7 +182,7 @@ pub(super) fn horizon(
     Ok(AtHorizon { name, recipe, delay_s, literal, dfr, stiffness_p99_n_m })
 }
 
-/// How often a degree above 1 was chosen where one was.
+/// Fraction of windows with a degree above 1, among those with a chosen degree.
 #[derive(Default)]
 struct Share {
     yes: u32,

@@ -1,4 +1,4 @@
-//! What the handle does when the hand lets go while the paper's recipe renders, without the governor.
+//! Motion of the handle when the hand lets go during rendering by the paper's recipe, without the governor.
 
 use nima_core::{
     impedance::{Mode, OwnMotion, Recipe},
@@ -25,9 +25,9 @@ pub(super) struct Hand {
 }
 
 impl Hand {
-    /// One that does not give way and does not move.
+    /// A hand that neither yields nor moves.
     pub(super) const FIRM: Self = Self { tremor_m: 0.0, noise_n: 0.0, grip_n_m: 1e5 };
-    /// One that gives way and does not move by itself.
+    /// A hand that yields but does not move by itself.
     pub(super) const YIELDING: Self = Self { grip_n_m: Grip::FIRM.n_m, ..Self::FIRM };
     /// Both, with noise, and with noise and tremor.
     const ALL: [Self; 6] = [
@@ -40,16 +40,16 @@ impl Hand {
     ];
 }
 
-/// What renders: a name, the mode, its recipe.
+/// A renderer: its name, the mode, its recipe.
 type Way = (&'static str, Mode, Recipe);
-/// The recipe as printed, repaired, and reflection beside it.
+/// The recipe as printed, repaired, and reflection for comparison.
 pub(super) const WAYS: [Way; 3] =
     [("as printed", Mode::Literal, PRINTED), ("repaired", Mode::Literal, REPAIRED), ("reflection", Mode::Dfr, PRINTED)];
 
-/// One letting go.
+/// One release.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Kick {
-    /// What is changed in the recipe; reflection for comparison.
+    /// The change of the recipe; reflection for comparison.
     pub name: &'static str,
     /// Amplitude of the hand's tremor, m.
     pub tremor_m: f64,
@@ -57,12 +57,12 @@ pub struct Kick {
     pub noise_n: f64,
     /// Stiffness of the grip, N/m.
     pub grip_n_m: f64,
-    /// What happened.
+    /// Result.
     #[serde(flatten)]
     pub row: Row,
 }
 
-/// Held and pressing, by each hand, as printed and repaired, and reflection beside them.
+/// Held and pressing, by each hand, as printed and repaired, and reflection for comparison.
 ///
 /// # Errors
 /// [`ReleaseError`] if the scene has no tissue or the force is never reached.

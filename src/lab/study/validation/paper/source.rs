@@ -1,4 +1,4 @@
-//! Motion and force that the paper's recipe is tried on: the peg transfer with shorter and longer holds.
+//! Motion and force for testing the paper's recipe: the peg transfer with shorter and longer holds.
 
 use nima_core::impedance::{AXES, Sample};
 use nima_machine::config::RigConfig;
@@ -11,28 +11,29 @@ use crate::{tradeoff::Source, validation::ValidationError};
 /// The paper's task, and its programmed delay (s).
 const SCENE: &str = "peg_transfer";
 const DELAY_S: f64 = 0.3;
-/// Rate of the recording, Hz.
 const RATE_HZ: f64 = 1000.0;
 
-/// How the hand works and how well its force is measured.
+/// The hand's way of working, and the accuracy of the force measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conditions {
-    /// Time that the hand drags and then rests at the bottom of each press, s each.
+    /// Duration of dragging, and of resting at the bottom of each press, s each.
     pub hold_s: f64,
     /// Standard deviation of the force sensor's noise, N.
     pub noise_n: f64,
     /// Amplitude of the hand's tremor, m.
     pub tremor_m: f64,
-    /// Whether the hand feels the force of the loop (mode and gates of the simulated rig) and gives way to it.
+    /// Whether the hand feels the force of the loop (mode and gates of the simulated rig) and yields to it.
     pub feels: bool,
 }
 
 impl Conditions {
-    /// Those under which the paper's figures come out: a hand that hardly rests and is not pushed back, and little noise.
+    /// The conditions that reproduce the paper's results: a hand that hardly rests and is not pushed back, and little
+    /// noise.
     pub const PAPER: Self = Self { hold_s: 0.1, noise_n: 0.01, tremor_m: 8e-5, feels: false };
-    /// Those of the scene.
+    /// The conditions of the scene.
     pub const SCENE: Self = Self { hold_s: 0.35, noise_n: 0.02, tremor_m: 8e-5, feels: true };
-    /// The first, longer holds, more noise and none, a hand that feels the force, and the second without tremor.
+    /// The paper's conditions, longer holds, more noise and none, a hand that feels the force, and the scene's
+    /// conditions without tremor.
     pub const ALL: [Self; 9] = [
         Self::PAPER,
         Self { noise_n: 0.02, ..Self::PAPER },
@@ -53,7 +54,7 @@ impl Conditions {
         format!("holds of {:.0} ms, noise {noise_n} N{tremor}{feels}", 1e3 * hold_s)
     }
 
-    /// `seconds` of the task: where the tip was, and the force measured there.
+    /// Records `seconds` of the task: the position of the tip, and the force measured there.
     ///
     /// # Errors
     /// [`ValidationError`] if the scene or a setting is invalid.

@@ -1,4 +1,4 @@
-//! The figures as tables, the same for a terminal and for a document.
+//! The results as tables, the same for a terminal and for a document.
 
 use std::fmt::Write as _;
 
@@ -99,7 +99,7 @@ fn pair(figures: &Figures) -> String {
     format!("{} +- {}", number(figures.mae_n), number(figures.sd_n))
 }
 
-/// Three digits where a person reads them, an exponent where they say nothing any more.
+/// Three digits where they are readable, otherwise an exponent.
 fn number(value: f64) -> String {
     match value {
         large if large >= 1e3 => format!("{large:.0e}"),

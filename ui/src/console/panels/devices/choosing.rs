@@ -1,4 +1,4 @@
-//! Another device for a part: those that other parts of the rig have, and those that are found.
+//! Another device for a part: devices of other parts of the rig, and found devices.
 
 use egui::{Button, Label, TextEdit, Ui, vec2};
 use nima_devices::discovery::Plugged;
@@ -10,7 +10,7 @@ use nima_machine::{
 use super::{Change, DevicesState, row::identity_words};
 use crate::console::{live::Live, start::Looked, text, widgets::small};
 
-/// What is opened below a part.
+/// Choice below a part.
 #[derive(Debug)]
 pub(super) struct Chooser {
     part: Part,
@@ -18,13 +18,13 @@ pub(super) struct Chooser {
     sought: Looked<Vec<Sought>>,
 }
 
-/// Opens the choice of this part, or closes it.
+/// Opens or closes the choice of this part.
 pub(super) fn toggle(state: &mut DevicesState, part: Part) {
     let is_open = state.chooser.as_ref().is_some_and(|chooser| chooser.part == part);
     state.chooser = (!is_open).then(|| Chooser { part, place: String::new(), sought: Looked::default() });
 }
 
-/// Draws the choice if it is open at this part; returns the change that was asked for.
+/// Draws the choice if it is open at this part; returns the requested change.
 pub(super) fn chooser_ui(
     ui: &mut Ui,
     live: &Live,
@@ -62,7 +62,7 @@ pub(super) fn chooser_ui(
     chosen.map(|chosen| Change::Choose(part, chosen))
 }
 
-/// The devices of other parts of this kind: the two are exchanged.
+/// The devices of other parts of this kind, to swap with this one.
 fn others_ui(ui: &mut Ui, live: &Live, part: Part, refused: Option<&str>) -> Option<Chosen> {
     let mut chosen = None;
     let mut any = false;

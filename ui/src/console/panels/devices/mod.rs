@@ -1,8 +1,7 @@
-//! The devices of the rig: which one is which, whether each is connected and measures well, and which one is used for
-//! what.
+//! The devices of the rig: identification, connection, test, and assignment to parts.
 //!
-//! Left and right stand side by side where there is room. A change of the rig is a [`Change`] that the window carries
-//! out: it writes the rig file and starts the machine again.
+//! Left and right are side by side if there is room. The window carries out a [`Change`] of the rig: it writes the rig file
+//! and restarts the machine.
 
 mod choosing;
 mod report;
@@ -27,59 +26,57 @@ use crate::words::{obstacle_words, side_word};
 use choosing::Chooser;
 use row::row_ui;
 
-/// Width from which left and right stand side by side.
+/// Width from which left and right are side by side.
 const TWO_COLUMNS: f32 = 600.0;
-/// A test that gets no data for so long is broken off.
+/// A test without data for this time is aborted.
 const TEST_MAX: std::time::Duration = std::time::Duration::from_secs(6);
 
-/// A change of the rig that a person asked for.
+/// A requested change of the rig.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Exchange the devices of this kind between right and left.
+    /// Swap the devices of this kind between right and left.
     ExchangeSides(PartKind),
     /// Use another device for this part.
     Choose(Part, Chosen),
 }
 
-/// A test that is going on.
+/// A running test.
 #[derive(Debug)]
 struct Test {
-    /// Places in the roster.
+    /// Indices in the roster.
     places: Vec<usize>,
-    /// Number of the block with which it begins.
+    /// Number of its first block.
     from: u64,
     began: std::time::Instant,
 }
 
-/// State of the panel.
 #[derive(Debug, Default)]
 pub struct DevicesState {
     test: Option<Test>,
     results: Vec<(usize, Checkup)>,
     chooser: Option<Chooser>,
     told: Option<String>,
-    /// How it stands with the endoscope's picture, and what to do; nothing where the rig has none.
+    /// State of the endoscope and remedy; `None` for a rig without one.
     pub(in crate::console) picture: Option<[String; 2]>,
-    /// The machine is being started.
     pub(in crate::console) is_starting: bool,
-    /// The panel was drawn in the last frame: lights are looked after while the window rests.
+    /// The panel was drawn in the last frame: lights are updated while the window rests.
     pub(in crate::console) is_seen: bool,
 }
 
 impl DevicesState {
-    /// Shows this at the top of the panel.
+    /// Shows this text at the top of the panel.
     pub(in crate::console) fn tell(&mut self, told: String) {
         self.told = Some(told);
     }
 
-    /// Other devices may be there now: what was found out about the ones before is forgotten.
+    /// Discards everything known about the previous devices.
     pub(in crate::console) fn begin_anew(&mut self) {
         self.test = None;
         self.chooser = None;
         self.results.clear();
     }
 
-    /// Whether a test is going on, which needs every block of data.
+    /// Whether a test is running, which needs every block of data.
     pub(in crate::console) const fn is_testing(&self) -> bool {
         self.test.is_some()
     }
@@ -123,7 +120,7 @@ impl DevicesState {
     }
 }
 
-/// Why the rig cannot be changed now.
+/// Reason why the rig cannot be changed now.
 pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> Option<&'static str> {
     if is_starting {
         return Some(text::devices::STARTING.get());
@@ -135,7 +132,7 @@ pub(in crate::console) fn why_not_to_change(live: &Live, is_starting: bool) -> O
     })
 }
 
-/// The panel; without devices it says that everything is simulated. Returns a change of the rig that was asked for.
+/// The panel; for a rig without devices it says that everything is simulated. Returns a requested change of the rig.
 pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<Change> {
     state.is_seen = true;
     if live.roster.is_empty() {
@@ -155,7 +152,7 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
     ui.columns(columns[0].len(), |columns_ui| {
         for row in &columns {
             for (ui, (side, places)) in columns_ui.iter_mut().zip(row) {
-                // Columns justify their texts; ragged lines are easier to read in a narrow one.
+                // Columns justify their texts; ragged lines are easier to read in a narrow column.
                 ui.with_layout(Layout::top_down(Align::Min), |ui| {
                     ui.label(small(text::devices::column(*side)));
                     for place in places {
@@ -174,7 +171,7 @@ pub fn devices_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState) -> Option<
     change
 }
 
-/// The endoscope's picture, which the loop knows nothing of.
+/// The endoscope, which the loop does not use.
 fn picture_ui(ui: &mut Ui, state: &DevicesState) {
     let Some([told, cure]) = &state.picture else { return };
     ui.add_space(6.0);
@@ -187,7 +184,7 @@ fn picture_ui(ui: &mut Ui, state: &DevicesState) {
 
 type Column = (Option<Side>, Vec<usize>);
 
-/// Rows of columns: left and right side by side where there is room, what both share in a column of its own.
+/// Rows of columns: left and right side by side if there is room, shared devices in a separate column.
 fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<Column>> {
     let of = |side: Option<Side>| {
         let is_of = |place: &usize| roster[*place].part.and_then(Part::side) == side;
@@ -202,7 +199,7 @@ fn columns_of(roster: &Roster, width: f32) -> Vec<Vec<Column>> {
     columns.chunks(side_by_side).map(<[Column]>::to_vec).collect()
 }
 
-/// Above the devices: what the lights are for, the test of all, the exchanges.
+/// Above the devices: explanation of the lights, the test of all devices, the swaps.
 fn head_ui(ui: &mut Ui, live: &Live, state: &mut DevicesState, refused: Option<&str>) -> Option<Change> {
     ui.add(Label::new(weak(text::devices::WHICH.get())).wrap());
     let mut change = None;

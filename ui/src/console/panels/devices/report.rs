@@ -1,4 +1,4 @@
-//! What the test of a device has found: a verdict, what to look at with its cure, and the figures.
+//! Result of a device test: a verdict, problems with remedies, and the measurements.
 
 use egui::{Grid, Label, RichText, Ui};
 use nalgebra::Vector3;
@@ -16,7 +16,6 @@ use crate::{
     words::{channel_group, finding_words, three_digits},
 };
 
-/// Draws the result of a test.
 pub(super) fn report_ui(ui: &mut Ui, checkup: &Checkup) {
     ui.scope(|ui| result_ui(ui, checkup));
 }
@@ -79,7 +78,7 @@ fn figures(checkup: &Checkup) -> Vec<Figure> {
 
 type Group<'a> = (&'static str, &'static str, f64, Vec<&'a Measured>);
 
-/// The numbers of the readings by what they measure.
+/// Values of the readings, grouped by quantity.
 fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
     let mut groups: Vec<Group<'_>> = Vec::new();
     for one in &checkup.measured {
@@ -92,7 +91,7 @@ fn groups(checkup: &Checkup) -> Vec<Group<'_>> {
     groups
 }
 
-/// Lowest and highest reading; one number where they hardly differ.
+/// Lowest and highest reading; one number if they hardly differ.
 fn span(one: &Measured, scale: f64) -> String {
     let [low, high] = [one.low, one.high].map(|value| short(value * scale));
     if low == high { low } else { format!("{low}\u{2026}{high}") }
@@ -102,11 +101,11 @@ fn span(one: &Measured, scale: f64) -> String {
 fn short(value: f64) -> String {
     let decimals = if value.abs() >= 10.0 { 1 } else { 2 };
     let words = format!("{value:.decimals$}");
-    // Minus zero is zero.
+    // Avoids `-0`.
     if words.trim_start_matches(['-', '0', '.']).is_empty() { words.trim_start_matches('-').to_owned() } else { words }
 }
 
-/// Greatest distance from the middle of the range as a share of what is possible, percent.
+/// Maximum distance from the middle of the range, in percent of the possible distance.
 fn reached_percent(one: &Measured) -> Option<f64> {
     let [low, high] = one.range?;
     let middle = f64::midpoint(low, high);
@@ -114,7 +113,7 @@ fn reached_percent(one: &Measured) -> Option<f64> {
     Some(100.0 * (one.high - middle).max(middle - one.low) / half)
 }
 
-/// The axis that is nearest to this direction, how far off it is (degrees), and the length.
+/// The axis nearest to this direction, the angle to it (degrees), and the length.
 fn nearest_axis(up: &Vector3<f64>) -> Option<(&'static str, f64, f64)> {
     let size = up.norm();
     if !size.is_finite() || size <= 0.0 {

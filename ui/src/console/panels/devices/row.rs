@@ -1,4 +1,4 @@
-//! One device: its light, its state, its buttons, and what is opened below it.
+//! One device: its light, its state, its buttons, and the area opened below it.
 
 use egui::{Button, Color32, Label, RichText, Sense, Ui, Vec2, vec2};
 use nima_devices::{Health, Identity, Standing, Trouble};
@@ -16,7 +16,7 @@ const BUTTON: Vec2 = vec2(62.0, 22.0);
 /// Radius of the light.
 const LIGHT: f32 = 8.0;
 
-/// Draws a device; returns a change of the rig that was asked for.
+/// Draws a device; returns a requested change of the rig.
 pub(super) fn row_ui(
     ui: &mut Ui,
     live: &Live,
@@ -49,13 +49,13 @@ pub(super) fn row_ui(
     change
 }
 
-/// A device by its name and serial number; `None` if it tells neither.
+/// Name and serial number; `None` if the device reports neither.
 pub(super) fn identity_words(identity: &Identity) -> Option<String> {
     let Identity { product, serial, firmware } = identity;
     (!product.is_empty()).then(|| text::devices::identity(product, serial, firmware))
 }
 
-/// The light that tells which device is moved.
+/// The light that shows which device is being moved.
 fn light_ui(ui: &mut Ui, live: &Live, entry: &RosterEntry, place: usize) {
     let Some(part) = entry.part else { return };
     let motion = live.activity.lit(place).map(|channel| text::devices::motion(part.kind(), channel));

@@ -1,4 +1,4 @@
-//! The recorded picture of a moment: read by the code of its time that is in the picture itself.
+//! The recorded image of a moment, identified by a time code in the image.
 
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use crate::console::theme;
 
 const SQUARE_PX: usize = 8;
 const SIZE_PX: [usize; 2] = [256, 24];
-/// Time between two pictures, ns, and from when no more come, s.
+/// Time between two images, ns, and the time of the last one, s.
 const PERIOD_NS: u64 = 33_333_333;
 const STOPS_S: f64 = 4.0;
 
-/// A picture that shows this time (us).
+/// An image with this time (us) as code.
 fn pixels(time_us: u64) -> Vec<u8> {
     let mut rgb = vec![120; 3 * SIZE_PX[0] * SIZE_PX[1]];
     time_code::draw(time_us, SQUARE_PX, &mut rgb, SIZE_PX[0]);
@@ -31,7 +31,7 @@ fn code_of(picture: &Picture) -> u64 {
     time_code::read(SQUARE_PX, brightness).expect("a sound code")
 }
 
-/// The session with JPEGs as a camera would have sent them, up to four seconds, one of them damaged; and when it began, ns.
+/// The session with JPEGs as a camera would have sent them, up to 4 s, one of them damaged; returns its start, ns.
 fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
     with_messages(from, to, PICTURE_TOPIC, encoding::<CompressedImage>(), |number, time_ns| {
         let mut data = jpeg::encode(&pixels(time_ns / 1000), SIZE_PX, 90);
@@ -44,7 +44,7 @@ fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
     })
 }
 
-/// The same as a stream, whose pictures come from `coded`.
+/// Like [`with_pictures`], as a stream whose images come from `coded`.
 fn with_stream(from: &Path, to: &Path, mut coded: impl FnMut(u64, u64) -> Vec<u8>) -> u64 {
     with_messages(from, to, VIDEO_TOPIC, encoding::<CompressedVideo>(), |number, time_ns| {
         let timestamp = Some(timestamp(time_ns));
@@ -54,7 +54,7 @@ fn with_stream(from: &Path, to: &Path, mut coded: impl FnMut(u64, u64) -> Vec<u8
     })
 }
 
-/// The session with these messages of pictures, which are asked for by number and time; and when it began, ns.
+/// The session with these image messages, by number and time; returns its start, ns.
 fn with_messages(
     from: &Path,
     to: &Path,
@@ -90,7 +90,7 @@ fn with_messages(
     begin_ns
 }
 
-/// One frame of the picture; all words in it.
+/// All texts in one frame of the image.
 fn drawn(past: &mut Past) -> String {
     let context = Context::default();
     theme::apply(&context);
@@ -103,13 +103,13 @@ fn drawn(past: &mut Past) -> String {
     all
 }
 
-/// Draws until the picture is that of the moment on the screen.
+/// Draws until the image of the moment on the screen is shown.
 fn shown(past: &mut Past) -> Option<Arc<Picture>> {
     let began = Instant::now();
     loop {
         past.step(0.0, false);
         if past.live.is_some() {
-            // Only what a frame asks for is found.
+            // Only a moment requested by a frame is found.
             drawn(past);
             if let Some(found) = past.panels.eyes.projected(past.shown_s()) {
                 return found.0;
@@ -120,13 +120,13 @@ fn shown(past: &mut Past) -> Option<Arc<Picture>> {
     }
 }
 
-/// Time between the moment on the screen and the time that is in its picture, s.
+/// Time between the moment on the screen and the code in its image, s.
 fn behind_s(past: &mut Past, begin_ns: u64) -> Option<f64> {
     let picture = shown(past)?;
     Some(past.shown_s() - (code_of(&picture) as f64 - begin_ns as f64 / 1e3) / 1e6)
 }
 
-/// No picture is older than its frame, at these moments (s) and in a second that is played.
+/// Checks that no image is older than its frame, at these moments (s) and in one second of playback.
 fn in_time_at_each_and_while_played(past: &mut Past, begin_ns: u64, moments_s: &[f64]) {
     let frame_s = PERIOD_NS as f64 / 1e9;
     let judge = |past: &mut Past| {
@@ -159,19 +159,19 @@ fn the_picture_of_a_moment_is_that_of_the_frame_before_it_also_while_it_is_playe
     assert!(past.panels.eyes.is_on());
     in_time_at_each_and_while_played(&mut past, begin_ns, &[3.9, 0.005, 0.8, 2.0005, 1.234, 0.039, 3.0]);
     past.toggle();
-    // A damaged one is told, and the last whole one stays.
+    // A damaged image is reported, and the last whole one stays.
     let frame_s = PERIOD_NS as f64 / 1e9;
     settled(&mut past, 0.005 + 45.5 * frame_s);
     let behind_s = behind_s(&mut past, begin_ns).unwrap();
     assert!((frame_s..2.0 * frame_s).contains(&behind_s), "{behind_s} s");
-    // Frozen then is frozen now; and where none came for two seconds, there is none.
+    // An image frozen in the recording is frozen in playback; after two seconds without images, none is shown.
     settled(&mut past, 5.0);
     assert!((0.99..1.04).contains(&self::behind_s(&mut past, begin_ns).unwrap()));
     settled(&mut past, 6.3);
     assert!(shown(&mut past).is_none());
 }
 
-/// A session of 4.5 s with a stream: open, read, and when it began, ns.
+/// An open, read session of 4.5 s with a stream, and its start, ns.
 fn streamed(folder: &Path, coded: impl FnMut(u64, u64) -> Vec<u8>) -> (Past, u64) {
     let [path, filmed] = ["session.mcap", "filmed.mcap"].map(|name| folder.join(name));
     record(&path, "bimanual", 4.5, |_| None);
@@ -202,7 +202,7 @@ fn a_recorded_stream_says_which_program_shows_it() {
     settled(&mut past, 2.0);
     shown(&mut past);
     let words = drawn(&mut past);
-    assert!(words.contains("Picture is damaged") && words.contains("built without H.264"), "{words}");
+    assert!(words.contains("Image is damaged") && words.contains("built without H.264"), "{words}");
 }
 
 #[test]
@@ -229,11 +229,11 @@ fn the_words_over_a_recorded_picture_are_those_of_its_moment() {
         drawn(past)
     };
     let live = words(&mut past, 3.0);
-    assert!(live.contains("Recorded picture, ") && live.contains(" ms old then"), "{live}");
+    assert!(live.contains("Recorded image, ") && live.contains(" ms old then"), "{live}");
     let frozen = words(&mut past, 4.8);
-    assert!(frozen.contains("Picture is frozen: nothing new for 0."), "{frozen}");
+    assert!(frozen.contains("Image is frozen: no new image for 0."), "{frozen}");
     let none = words(&mut past, 6.4);
-    assert!(none.contains("No picture came in the two seconds before this moment"), "{none}");
+    assert!(none.contains("No image in the two seconds before this moment"), "{none}");
 }
 
 fn texts(shape: &egui::Shape, all: &mut String) {

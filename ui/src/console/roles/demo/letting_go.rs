@@ -1,4 +1,4 @@
-//! A hand that lets go again and again, to show what the governor is for.
+//! A hand that repeatedly releases the handle, to show the purpose of the governor.
 
 use nalgebra::Vector3;
 use nima_core::safety::Why;
@@ -9,31 +9,30 @@ use nima_machine::{
 
 use crate::console::{live::Live, outbox::Outbox};
 
-/// The hand lets go when it presses at least so hard, N, and takes the handle again after this time, s.
+/// The hand releases the handle when it presses at least this hard, N, and grips it again after this time, s.
 const LET_GO_N: f64 = 1.5;
 const OPEN_S: f64 = 2.5;
-/// Then it works on for this time, s, before it lets go once more.
+/// Time until the next release, s.
 const CLOSED_S: f64 = 2.5;
-/// The engagement after that takes at most this time, s; it fails after [`nima_core::safety::READY_WITHIN_S`].
+/// Maximum time of the engagement after that, s; it fails after [`nima_core::safety::READY_WITHIN_S`].
 const RETURNS_S: f64 = 2.5;
 
-/// The hand, and how far its handle went.
+/// The hand, and the travel of its handle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LettingGo {
-    /// Where the handle was when the hand opened, m; `None` while it is closed.
+    /// Position of the handle when the hand opened, m; `None` while it is closed.
     from_m: Option<Vector3<f64>>,
-    /// When it opened or closed, s on the loop's clock.
+    /// Time at which the hand opened or closed, s on the loop's clock.
     since_s: Option<f64>,
-    /// The governor found nobody at the handle and ended the engagement.
+    /// The governor found no hand at the handle and ended the engagement.
     gone: bool,
-    /// When the hand was back and an engagement was asked for, s.
+    /// Time at which the hand was back and an engagement was requested, s.
     returned_s: Option<f64>,
-    /// How far the handle went the last time, m.
+    /// Travel of the handle after the last release, m.
     pub(super) travel_m: Option<f64>,
 }
 
 impl LettingGo {
-    /// Whether the hand is open.
     pub(super) const fn is_open(&self) -> bool {
         self.from_m.is_some()
     }
@@ -43,7 +42,7 @@ impl LettingGo {
         self.is_open() || self.returned_s.is_some_and(|at_s| now_s - at_s < RETURNS_S)
     }
 
-    /// Opens the hand when it presses, closes it a while later, and engages again if the governor had to end that.
+    /// Opens the hand when it presses, closes it a while later, and engages again if the governor ended the engagement.
     pub(super) fn play(&mut self, live: &Live, outbox: &mut Outbox) {
         let Some(tick) = live.first_tick() else { return };
         let for_s = tick.t_s - *self.since_s.get_or_insert(tick.t_s);
@@ -61,10 +60,10 @@ impl LettingGo {
             return;
         };
         if tick.state == LoopState::Engaged {
-            // Behind the end of the engagement the hand's place is not on the same scale.
+            // After the end of the engagement the hand's position is not on the same scale.
             self.travel_m = self.travel_m.map(|most_m| most_m.max((tick.leader_m - from_m).norm()));
         }
-        // Who ended the engagement otherwise, wants it ended.
+        // An engagement that ended for another reason stays ended.
         let ended = live.changes[Side::Right.index()].is_some_and(|change| change.why == Why::Absent);
         self.gone |= tick.state == LoopState::Idle && ended;
         if for_s > OPEN_S {

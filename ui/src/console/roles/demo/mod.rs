@@ -1,5 +1,5 @@
-//! The demonstration: a script that shows the modes at a long and a short delay, explains them, and invites the
-//! audience to try. Only for simulated and emulated rigs; afterwards mode and delay are restored.
+//! The demonstration: a script that shows the modes at a long and a short delay, explains them, and invites the audience to
+//! try. Only for simulated and emulated rigs; afterwards mode and delay are restored.
 
 mod letting_go;
 mod pace;
@@ -29,19 +29,18 @@ use crate::console::{
 
 pub use self::state::DemoState;
 
-/// With less width than this the chapters need two rows.
-const ONE_ROW: f32 = 1270.0;
-/// With less height than this the force-space plot is left out.
+/// Below this width the chapters need two rows.
+const ONE_ROW: f32 = 1310.0;
+/// Below this height the force-space plot is left out.
 const LEAST_SPACE: f32 = 190.0;
 
-/// Draws the view.
 pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox: &mut Outbox) {
     if may_play(live) && !live.is_shown_only() {
         panels.demo.play(live, panels.scene.is_led(), outbox);
     }
     let side = Frame::new().fill(theme::now().panel).inner_margin(Margin::same(8));
     let height = if ui.available_width() < ONE_ROW { 176.0 } else { 140.0 };
-    // The script is not what happened in the past.
+    // The script does not belong to a recorded session.
     if !live.is_shown_only() {
         let frame = side.inner_margin(Margin::symmetric(18, 12));
         let caption = Panel::bottom("caption").exact_size(height).resizable(false).frame(frame);
@@ -66,7 +65,7 @@ pub(super) fn demo_ui(ui: &mut Ui, live: &mut Live, panels: &mut Panels, outbox:
     });
 }
 
-/// The steps, the present text, and the progress.
+/// The steps, the current text, and the progress.
 fn caption_ui(ui: &mut Ui, live: &Live, demo: &mut DemoState) {
     let plays = may_play(live);
     ui.horizontal_wrapped(|ui| {

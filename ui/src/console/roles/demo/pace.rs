@@ -1,42 +1,41 @@
-//! How long a chapter has been shown, on the loop's clock.
+//! Duration of a chapter on the loop's clock.
 //!
-//! Everything that a chapter shows happens on that clock: the hand's motion, the contacts, the delay. On the real clock it is also the
-//! viewer's time, however rarely the window is drawn. A simulated loop that runs slower than real time makes a chapter longer by
-//! the same factor, so that a viewer sees the same motions and contacts in it.
+//! Everything that a chapter shows happens on that clock: the hand's motion, the contacts, the delay. On the real clock it is
+//! also the viewer's time, however rarely the window is drawn. A simulated loop that runs slower than real time makes a
+//! chapter longer by the same factor, so that a viewer sees the same motions and contacts in it.
 
-/// Frames at most this far apart show motion, s. A longer gap is a pause: the viewer saw a still image, or no window.
+/// Maximum time between frames that show motion, s. A longer gap is a pause: the viewer saw a still image, or no window.
 pub(super) const PAUSE_S: f64 = 1.0;
-/// A chapter is not left before a viewer saw it in motion for this time, s: its pauses count, but they never skip it. That is one contact of
-/// the simulated hand, and the time to read a dozen words.
+/// Minimum time for which a viewer sees a chapter in motion, s: its pauses count, but they never skip it. That is one contact
+/// of the simulated hand, and the time to read a dozen words.
 const SEEN_MIN_S: f64 = 4.0;
 
-/// Time of the chapter that is shown.
+/// Time of the current chapter.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(clippy::struct_field_names, reason = "what they share is the unit")]
 pub(super) struct Pace {
-    /// Time of the tick in the frame before, s.
+    /// Time of the tick in the previous frame, s.
     last_s: Option<f64>,
-    /// Time since the chapter began, pauses included, s.
+    /// Time since the chapter started, pauses included, s.
     shown_s: f64,
     /// The part of that time in which the chapter was seen in motion, s.
     seen_s: f64,
 }
 
 impl Pace {
-    /// Returns the time since the frame before, s.
+    /// Returns the time since the previous frame, s.
     pub(super) fn passed_s(&mut self, now_s: f64) -> f64 {
         let last_s = self.last_s.replace(now_s).unwrap_or(now_s);
         (now_s - last_s).max(0.0)
     }
 
-    /// Begins a chapter.
     pub(super) const fn begin(&mut self) {
         self.shown_s = 0.0;
         self.seen_s = 0.0;
     }
 
-    /// Begins the chapter after one of this length (s), which ended between two frames: what was shown beyond its end counts for the next
-    /// one, so that a round takes the same time at every frame rate. A pause does not.
+    /// Starts the chapter after one of this length (s), which ended between two frames: time beyond its end counts for the
+    /// next chapter, so that a round takes the same time at every frame rate. A pause does not count.
     pub(super) fn go_on(&mut self, seconds: f64) {
         let over_s = self.shown_s - seconds;
         self.begin();
@@ -96,7 +95,7 @@ mod tests {
             let all_s = lengths_s.iter().sum::<f64>();
             assert_eq!(lengths_s.len(), 6);
             assert!(lengths_s.iter().all(|length_s| (length_s - 14.0).abs() <= frame_s), "{rate_hz} Hz: {lengths_s:?}");
-            // Frames that are farther apart than a pause start each chapter anew.
+            // Frames that are farther apart than a pause restart each chapter.
             let late_s = if rate_hz < 1.0 { 6.0 * frame_s } else { frame_s };
             assert!((84.0 - 1e-6..=84.0 + late_s).contains(&all_s), "{rate_hz} Hz: {all_s} s");
         }
@@ -108,12 +107,12 @@ mod tests {
             let frames = (0..10_000).map(|frame| f64::from(frame) / 30.0);
             lengths_s(frames.map(move |t_s| if t_s > from_s { t_s + pause_s } else { t_s }))
         };
-        // It fits into the chapter.
+        // The pause fits into the chapter.
         assert!(with_pause(5.0, 6.0).iter().all(|length_s| (length_s - 14.0).abs() < 0.05));
         // The chapter was seen for 5 s: it ends with the pause, and the next one has its full time.
         let [first_s, second_s, ..] = with_pause(5.0, 60.0)[..] else { panic!() };
         assert!((first_s - 65.0).abs() < 0.1 && (second_s - 14.0).abs() < 0.1, "{first_s} s, {second_s} s");
-        // It had just begun: it is shown before the next one.
+        // The chapter had just started: it is shown before the next one.
         let [first_s, second_s, ..] = with_pause(0.0, 60.0)[..] else { panic!() };
         assert!((first_s - 63.0).abs() < 0.1 && (second_s - 14.0).abs() < 0.1, "{first_s} s, {second_s} s");
     }

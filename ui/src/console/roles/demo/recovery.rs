@@ -1,8 +1,8 @@
-//! What the demonstration does when the loop has ended the engagement by itself.
+//! Recovery of the demonstration after the loop ended the engagement.
 //!
-//! It explains the cause, releases the latch, engages, and the chapter restarts: on a rig without any device only, where there is no
-//! force in anybody's hand and nothing moves. Everywhere else a person does that. A stop is not a fault: a person wanted it, and only a
-//! person ends it, also if it was pressed while a fault was latched.
+//! It explains the cause, releases the latch, engages, and restarts the chapter, but only on a rig without any device, where
+//! no hand feels a force and nothing moves. On every other rig a person does that. A stop is not a fault: a person requested
+//! it, and only a person ends it, even if it was pressed while a fault was latched.
 
 use nima_core::safety::Why;
 use nima_machine::messages::{Command, Fault, LoopState};
@@ -13,20 +13,20 @@ use crate::{
     words::Remedy as _,
 };
 
-/// Time in which the cause is explained, s: about 30 words, read at 4 words a second.
+/// Time in which the cause is explained, s: about 30 words, read at 4 words per second.
 const EXPLAINED_S: f64 = 8.0;
-/// What was refused, because the cause of a fault is still present, is tried again after this time, s.
+/// A command refused because the cause of a fault is still present is repeated after this time, s.
 const AGAIN_S: f64 = 2.0;
-/// A stop reaches the loop, and its state the window, within this time, s; nobody releases a stop and engages faster.
+/// A stop reaches the loop, and its state the window, within this time, s; a person cannot release a stop and engage faster.
 const ARRIVES_S: f64 = 0.5;
 
-/// Why the loop ended the engagement.
+/// Reason why the loop ended the engagement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trouble {
     Fault(Fault),
-    /// The governor found nobody at the handle.
+    /// The governor found no hand at the handle.
     HandGone,
-    /// An engagement did not come about.
+    /// An engagement did not finish in time.
     Late,
 }
 
@@ -51,23 +51,23 @@ impl Trouble {
     }
 }
 
-/// The way back from a trouble.
+/// Recovery from the end of an engagement.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recovery {
     trouble: Trouble,
-    /// Time for which it has been explained to a viewer, s; a pause between frames explains nothing.
+    /// Time for which the cause has been explained to a viewer, s; a pause between frames does not count.
     explained_s: f64,
-    /// What the loop was asked for last, and when it is asked again, s of that time.
+    /// The last requested command, and the time of its next repetition, s of that time.
     asked: Option<(Command, f64)>,
 }
 
 impl Recovery {
-    /// From the trouble of a loop, if there is one.
+    /// `None` if the loop has no problem.
     pub(super) fn of(live: &Live) -> Option<Self> {
         Trouble::of(live).map(|trouble| Self { trouble, explained_s: 0.0, asked: None })
     }
 
-    /// Goes on after this time, s.
+    /// Continues after this time, s.
     pub(super) fn step(&mut self, state: LoopState, passed_s: f64, outbox: &mut Outbox) {
         self.explained_s += passed_s.min(PAUSE_S);
         let command = if state.is_latched() { Command::ReleaseStop } else { Command::Engage };
@@ -78,7 +78,7 @@ impl Recovery {
         }
     }
 
-    /// What happened, and what happens next.
+    /// Text about the cause and the next step.
     pub(super) fn words(&self) -> String {
         let left_s = (EXPLAINED_S - self.explained_s).ceil();
         match self.trouble {
@@ -93,18 +93,19 @@ impl Recovery {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PersonsStop {
     counted: Option<u64>,
-    /// When it was pressed, s on the loop's clock.
+    /// Time at which it was pressed, s on the loop's clock.
     at_s: Option<f64>,
 }
 
 impl PersonsStop {
-    /// Looks at what a person has asked for until this time, s.
+    /// Checks the person's commands up to this time, s.
     pub(super) fn notice(&mut self, live: &Live, now_s: f64, outbox: &Outbox) {
         let stops = outbox.stops();
         if self.counted.replace(stops).is_some_and(|before| before != stops) {
             self.at_s = Some(now_s);
         }
-        // The loop tells of a stop in its state, but of one under a latched fault only the window knows. A person ends it by engaging again.
+        // The loop reports a stop in its state, but only the window has a stop under a latched fault. A person ends it by
+        // engaging again.
         let engaged_s = live.first_tick().filter(|_| live.state() == LoopState::Engaged);
         let engaged_s = engaged_s.and_then(|tick| live.changes[tick.side.index()]).map(|change| change.t_s);
         if let (Some(engaged_s), Some(at_s)) = (engaged_s, self.at_s)

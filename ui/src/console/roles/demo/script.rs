@@ -7,30 +7,26 @@ use crate::{console::text, language::Text};
 /// One step of the script.
 #[derive(Debug)]
 pub(super) struct Step {
-    /// Name on its button.
     pub(super) name: Text,
-    /// What can be seen, and why.
+    /// Explanation.
     pub(super) words: Text,
-    /// Rendering mode.
     pub(super) mode: Mode,
     /// Delay of the link, s.
     pub(super) delay_s: f64,
-    /// Whether the hand lets go while it presses, and if so, with the governor or without.
+    /// Whether the hand releases the handle while it presses, and if so, with or without the governor.
     pub(super) lets_go: Option<Governor>,
     /// Duration, s.
     pub(super) seconds: f64,
 }
 
-/// What the governor does while the hand lets go.
+/// The governor while the hand releases the handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Governor {
-    /// It watches, as ever.
     Watches,
-    /// It is left out, to show what it is for.
+    /// Off, to show its purpose.
     LeftOut,
 }
 
-/// The script.
 pub(super) const SCRIPT: [Step; 9] = [
     Step {
         name: text::roles::DEMO_START,

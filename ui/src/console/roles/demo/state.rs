@@ -1,4 +1,4 @@
-//! What the demonstration does in a frame.
+//! One frame of the demonstration.
 
 use nima_core::impedance::Mode;
 use nima_machine::messages::{Command, LoopState};
@@ -14,7 +14,6 @@ use crate::{
     words::Remedy as _,
 };
 
-/// State of the script.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DemoState {
     pub(super) step: usize,
@@ -28,7 +27,7 @@ pub struct DemoState {
     stop: PersonsStop,
 }
 
-/// What was set before the demonstration.
+/// Settings before the demonstration.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     mode: Mode,
@@ -38,7 +37,7 @@ struct Before {
 }
 
 impl DemoState {
-    /// Restores what was set before.
+    /// Restores the previous settings.
     pub fn leave(&mut self, outbox: &mut Outbox) {
         let Self { mut letting_go, before, .. } = *self;
         self.begin_anew();
@@ -52,13 +51,13 @@ impl DemoState {
         }
     }
 
-    /// Another loop runs, with settings of its own.
+    /// Another loop is running, with its own settings.
     pub fn begin_anew(&mut self) {
         *self = Self { step: self.step, held: self.held, ..Self::default() };
     }
 
-    /// Goes on to the newest tick. Paused while a visitor leads the instrument, by the pause button, or while the loop does not
-    /// run.
+    /// Advances to the newest tick. Paused while a visitor drives the instrument, by the pause button, or while the loop does
+    /// not run.
     pub(super) fn play(&mut self, live: &Live, leading: bool, outbox: &mut Outbox) {
         let Some(tick) = live.first_tick() else { return };
         let passed_s = self.pace.passed_s(tick.t_s);
@@ -89,7 +88,7 @@ impl DemoState {
         }
     }
 
-    /// Begins the demonstration, if it has not begun; returns what was set before.
+    /// Starts the demonstration, if it has not started; returns the previous settings.
     fn enter(&mut self, live: &Live, outbox: &mut Outbox) -> Before {
         *self.before.get_or_insert_with(|| {
             outbox.push(Command::Compare(true));
@@ -103,18 +102,18 @@ impl DemoState {
         let Step { mode, delay_s, lets_go, .. } = SCRIPT[self.step];
         self.letting_go.close(live.first_tick().map_or(0.0, |tick| tick.t_s), outbox);
         self.letting_go.travel_m = None;
-        // The chapter before left the governor out, or the next one must find it.
+        // The previous chapter switched the governor off, or the next one needs it.
         if may_let_go(live) {
             outbox.push(Command::SetGovernor(lets_go != Some(Governor::LeftOut)));
         }
-        // A force that fades at standstill would leave nothing to let go.
+        // A force that fades at standstill would leave nothing to release.
         outbox.push(Command::SetStaticHold(lets_go.is_some() || before.static_hold));
         outbox.push(Command::SetMode(mode));
         outbox.push(Command::SetDelay(delay_s));
         self.told = Some(self.step);
     }
 
-    /// Leads the loop back from a trouble that came while the demonstration ran. A loop that was found in a fault is left as it is.
+    /// Recovers from a problem that occurred while the demonstration ran. A loop that was already in a fault is left alone.
     fn recover(&mut self, live: &Live, passed_s: f64, outbox: &mut Outbox) {
         let state = live.state();
         if state.is_latched() {
@@ -139,12 +138,12 @@ impl DemoState {
         }
     }
 
-    /// Whether something changes with time although the loop is at rest: the hand comes back, or a fault is explained.
+    /// Whether something changes with time although the loop is idle: the hand comes back, or a fault is explained.
     pub(in crate::console) const fn moves(&self) -> bool {
         self.letting_go.is_open() || self.recovery.is_some()
     }
 
-    /// Shows this chapter from its beginning.
+    /// Shows this chapter from its start.
     pub(super) const fn go_to(&mut self, step: usize) {
         self.step = step;
         self.pace.begin();
@@ -155,7 +154,7 @@ impl DemoState {
         self.pace.progress(SCRIPT[self.step].seconds)
     }
 
-    /// What can be seen and why, or why the demonstration waits and what to do.
+    /// Explanation of the chapter, or the reason why the demonstration waits, with the remedy.
     pub(super) fn caption(&self, live: &Live) -> String {
         let chapter = || SCRIPT[self.step].words.get().to_owned();
         if !may_play(live) {
@@ -182,17 +181,17 @@ impl DemoState {
     }
 }
 
-/// Whether the rig is simulated or emulated, so that nobody can be hurt. An arm at another machine may be a real one.
+/// Whether the rig is simulated or emulated, so that no one can be hurt. An arm at another machine may be real.
 pub(super) fn may_play(live: &Live) -> bool {
     live.rig.is_harmless() && live.line.is_none()
 }
 
-/// Whether the hand is simulated, so that it may let go.
+/// Whether the hand is simulated and may therefore release the handle.
 fn may_let_go(live: &Live) -> bool {
     live.rig.has_simulated_hand()
 }
 
-/// Whether the demonstration may leave a fault and engage: no device belongs to the rig, here or at another machine.
+/// Whether the demonstration may leave a fault and engage: the rig has no device, here or at another machine.
 fn may_recover(live: &Live) -> bool {
     may_play(live) && live.rig.devices.is_none() && live.rig.desk.is_none()
 }

@@ -1,4 +1,4 @@
-//! The demonstration on ticks that a test makes up: its time, its faults, and who may end a stop.
+//! The demonstration on synthetic ticks: its time, its faults, and who may end a stop.
 
 use nima_core::safety::Why;
 use nima_machine::{
@@ -14,7 +14,6 @@ use crate::console::{live::Live, outbox::Outbox};
 const FAULT: Fault = Fault::SourceSilent;
 const RATE_HZ: f64 = 30.0;
 
-/// A demonstration in a window, and the loop under it.
 struct Show {
     live: Live,
     demo: DemoState,
@@ -47,7 +46,6 @@ impl Show {
         show
     }
 
-    /// The loop enters this state.
     fn enters(&mut self, to: LoopState, why: Why) {
         let side = Side::Right;
         let t_s = self.tick.t_s;
@@ -61,7 +59,7 @@ impl Show {
         self.live.replay(raised.iter().chain([&changed]), &[Some(self.tick), None]);
     }
 
-    /// One frame, and what it sent.
+    /// Commands sent in one frame.
     fn frame(&mut self) -> Vec<Command> {
         self.tick.t_s += 1.0 / self.rate_hz;
         self.live.replay([].iter(), &[Some(self.tick), None]);
@@ -69,12 +67,12 @@ impl Show {
         self.outbox.sent()
     }
 
-    /// Frames for this time, s, and all that they sent.
+    /// Commands sent in this time, s.
     fn frames(&mut self, seconds: f64) -> Vec<Command> {
         (0..(seconds * self.rate_hz).round() as usize).flat_map(|_| self.frame()).collect()
     }
 
-    /// A loop that obeys: what it was asked for within this time, s.
+    /// A loop that follows commands: its commands within this time, s.
     fn obeyed(&mut self, seconds: f64) -> Vec<(f64, Command)> {
         let began_s = self.tick.t_s;
         let mut asked = Vec::new();
@@ -125,7 +123,7 @@ fn resumes(commands: &[Command]) -> Vec<Command> {
     commands.iter().filter(is_way_back).copied().collect()
 }
 
-/// When each chapter of a whole round began, s.
+/// Start of each chapter of a whole round.
 fn began_s(rate_hz: f64) -> Vec<f64> {
     let mut show = Show { rate_hz, ..Show::of("simulated") };
     let mut began_s = Vec::new();

@@ -1,4 +1,4 @@
-//! A picture of what a result changes: the point or frame of before and the new one, with a scale.
+//! A drawing of a change: the previous and the new point or frame, with a scale.
 
 use egui::{Align2, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
 use nalgebra::{Isometry3, Vector3};
@@ -9,13 +9,13 @@ use crate::console::{text::frames as texts, theme, widgets::fitting, wizards::pi
 const HEIGHT: f32 = 250.0;
 /// Length of an axis, in half heights.
 const AXIS: f64 = 0.62;
-/// Distance between before and after on the paper, in half heights; smaller changes than this length are drawn to its scale, m.
+/// Distance between the drawn points before and after, in half heights; smaller changes than this length are drawn to its
+/// scale, m.
 const APART: f64 = 0.55;
 const LEAST_M: f64 = 0.2e-3;
 /// Lengths of the scale, m.
 const SCALES_M: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 1e-1];
 
-/// Draws it.
 pub(super) fn effect_picture(ui: &mut Ui, effect: &Effect) {
     let size = vec2(ui.available_width().min(420.0), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -26,7 +26,7 @@ pub(super) fn effect_picture(ui: &mut Ui, effect: &Effect) {
     let half = f64::from(rect.height()) * 0.5;
     let way_m = effect.change().map_or(0.0, |[way_m, _]| way_m);
     let points_per_m = APART * half / way_m.max(LEAST_M);
-    // The new frame is in the middle: what is known best.
+    // The new frame is in the middle, because it is known best.
     let centre = rect.center() + vec2(0.0, 18.0);
     let middle_m = effect.after.translation.vector;
     let place = |frame: &Isometry3<f64>| {

@@ -55,7 +55,7 @@ where
     }
 }
 
-/// An enum over what the calibrations find, with one type around each.
+/// An enum over the results of the calibrations, with one type around each.
 macro_rules! of_each {
     ($(#[$meta:meta])* $vis:vis $name:ident($around:ident): $($variant:ident($found:ty)),*) => {
         $(#[$meta])*
@@ -72,7 +72,7 @@ macro_rules! of_each {
     };
 }
 
-/// What is the same for each of them.
+/// Dispatches a common operation.
 macro_rules! each {
     ($value:expr, $name:ident => $same:expr) => {
         match $value {
@@ -98,7 +98,7 @@ of_each!(
     Mount(SensorMountFound)
 );
 
-/// What every result has.
+/// Common parts of all results.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quality {
     pub(super) verdict: Verdict,
@@ -133,7 +133,7 @@ impl Outcome {
         each!(self, report => report.found.is_some())
     }
 
-    /// The record of the result; `None` if there is none.
+    /// `None` without a result.
     pub(super) fn record(&self, head: RecordHead, serials: Serials) -> Option<FrameCalibration> {
         let reason = language::with(Language::English, || crate::words::cause(&self.quality().cause));
         each!(self, report => report.record(head, serials, &reason).map(Into::into))
@@ -141,12 +141,11 @@ impl Outcome {
 }
 
 impl FrameCalibration {
-    /// What was judged of it.
     pub fn judgement_mut(&mut self) -> &mut Judgement {
         each!(self, record => &mut record.judgement)
     }
 
-    /// What it changed in the rig file.
+    /// Its changes to the rig file.
     pub fn rig_mut(&mut self) -> &mut Vec<RigChange> {
         each!(self, record => &mut record.rig)
     }
@@ -173,18 +172,16 @@ impl FrameCalibration {
 /// First part of the name of the file for the handle's part of a view.
 const HANDLE: &str = "view_handle";
 
-/// What is kept of a frame calibration, whichever it is.
+/// Facts of a saved frame calibration of any kind.
 #[derive(Clone, Debug)]
 pub struct FrameKept {
-    /// When it was made, UTC, ISO 8601.
+    /// Date, UTC, ISO 8601.
     pub date: String,
-    /// Its age.
     pub age: Age,
-    /// Its verdict.
     pub judgement: Judgement,
     /// Root mean square error on held-out poses.
     pub held_out: Sizes,
-    /// What it changed in the rig file.
+    /// Its changes to the rig file.
     pub rig: Vec<RigChange>,
 }
 
@@ -227,7 +224,7 @@ pub fn frame_kept(
     }
 }
 
-/// What the last saved calibration of this kind changed in the rig file; empty if there is none for this sensor and tool.
+/// Changes of the last saved calibration of this kind to the rig file; empty if there is none for this sensor and tool.
 pub(super) fn last_changes(store: &Store, kind: Kind, handle: bool, wrist: [&str; 2]) -> Vec<RigChange> {
     frame_kept(store, kind, handle, wrist).ok().flatten().map(|kept| kept.rig).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! What is different between the frame calibrations: settings, texts, instructions.
+//! Differences between the frame calibrations: settings, texts, instructions.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_core::calibration::{
@@ -13,38 +13,36 @@ use crate::console::text::frames as texts;
 /// The frame calibrations, in the order of use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Kind {
-    /// How the wrist sensor is mounted on the flange.
+    /// Mount of the wrist sensor on the flange.
     Mount,
-    /// Where the instrument's tip is.
+    /// Position of the instrument's tip.
     Tip,
-    /// Where the marker is on the instrument, and the tracker beside the arm.
+    /// Pose of the marker on the instrument, and of the tracker relative to the arm.
     HandEye,
     /// Origin and plane of the workspace.
     Table,
-    /// How the endoscope's picture is turned against arm and handle.
+    /// Rotation of the endoscope image relative to arm and handle.
     View,
     /// The remote centre of motion.
     Trocar,
 }
 
-/// Texts of one calibration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Texts {
-    /// What is to be done before the recording, which begins with the next step.
+    /// Instruction before the recording, which starts with the next step.
     pub(super) before: &'static str,
-    /// What is to be done while it records.
+    /// Instruction during the recording.
     pub(super) task: &'static str,
-    /// What is recorded.
+    /// Name of the recorded items.
     pub(super) units: &'static str,
-    /// The other way to do it, and its meaning.
+    /// The alternative method, and its meaning.
     pub(super) other_way: Option<[&'static str; 2]>,
 }
 
 impl Kind {
-    /// All of them, in the order of use.
+    /// All kinds, in the order of use.
     pub const ALL: [Self; 6] = [Self::Mount, Self::Tip, Self::HandEye, Self::Table, Self::View, Self::Trocar];
 
-    /// Name on buttons.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mount => texts::MOUNT.get(),
@@ -56,7 +54,6 @@ impl Kind {
         }
     }
 
-    /// Its purpose.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Mount => texts::MOUNT_MEANING.get(),
@@ -85,7 +82,7 @@ impl Kind {
         Texts { before, task, units, other_way: other }
     }
 
-    /// Whether the other way is open on this rig, or why not.
+    /// Whether the alternative method is available on this rig; otherwise the reason.
     pub(super) fn other_way_needs(self, subject: &Subject) -> Result<(), &'static str> {
         match self {
             Self::Tip | Self::Trocar if subject.hand_eye().is_none() => Err(texts::NEEDS_HAND_EYE.get()),
@@ -93,7 +90,7 @@ impl Kind {
         }
     }
 
-    /// A session without poses; `other_way` is by the tracker, or with the handle.
+    /// A session without poses; `other_way`: by the tracker, or with the handle.
     pub(super) fn job(self, subject: &Subject, other_way: bool) -> Option<Box<dyn Job>> {
         let tip_m = subject.tip_in_flange_m();
         Some(match self {
@@ -118,12 +115,12 @@ impl Kind {
     /// The sample as this calibration uses it.
     pub(super) fn seen(self, sample: &FrameSample, subject: &Subject) -> FrameSample {
         match (self, sample.leader_from_handle, sample.base_from_flange) {
-            // A hand is never so still that its handle does not turn; only the handle's place counts.
+            // A hand never holds a handle without rotation; only the handle's position counts.
             (Self::View, Some(handle), _) => {
                 let place_only = FrameSample::from(handle.translation.vector);
                 FrameSample { leader_from_handle: place_only.leader_from_handle, ..*sample }
             }
-            // Only the tilt counts: an arm that is held so still drifts and turns about the vertical.
+            // Only the tilt counts: an arm held still drifts and rotates about the vertical.
             (Self::Mount, _, Some(flange)) => {
                 let up = subject.up_in_base();
                 let up_in_flange = flange.rotation.inverse() * up;
@@ -135,7 +132,7 @@ impl Kind {
         }
     }
 
-    /// What is asked of the person after `taken` records; `target` tells the next pose of the list.
+    /// Instruction after `taken` records; `target` is the next pose of the list.
     pub(super) fn prompt(self, other_way: bool, taken: usize, target: impl Fn() -> PoseTarget) -> Prompt {
         let asked = View::by_arm(Vector3::zeros()).asked(taken);
         match self {
@@ -149,7 +146,7 @@ impl Kind {
         }
     }
 
-    /// What whoever stands at the arm is to do now, in words.
+    /// Text of the current instruction to the person at the arm.
     pub(super) fn asks(prompt: &Prompt, target: &str) -> String {
         match prompt {
             Prompt::Hold { .. } => texts::hold(target),

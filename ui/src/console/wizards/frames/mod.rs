@@ -1,5 +1,5 @@
-//! One wizard for all frame calibrations: check, record, result, save. [`Kind`] tells them apart. What is recorded is kept when going
-//! back and when closing.
+//! One wizard for all frame calibrations: check, record, result, save. [`Kind`] distinguishes them. Recorded data are kept
+//! when going back and when closing.
 
 mod effect;
 mod job;
@@ -44,7 +44,6 @@ use crate::console::{
     widgets::card,
 };
 
-/// Steps of these wizards.
 const STEPS: [Step; 4] = [
     Step { name: text::wizards::STEP_CHECK, meaning: texts::STEP_CHECK_HOVER },
     Step { name: texts::STEP_RECORD, meaning: texts::STEP_RECORD_HOVER },
@@ -55,17 +54,17 @@ const CHECK: usize = 0;
 const RECORD: usize = 1;
 const RESULT: usize = 2;
 const SAVE: usize = 3;
-/// Samples are taken this far apart, s: poses are held for half a second, and the tracker sends 60 frames a second.
+/// Interval of the samples, s: poses are held for half a second, and the tracker sends 60 frames per second.
 const EVERY_S: f64 = 0.004;
-/// A pose of a list that gives nothing new for so long is passed, s: longer than a person takes to begin with it.
+/// A pose of a list without a new record for this time is skipped, s: longer than a person takes to start with it.
 const PASSED_S: f64 = 8.0;
-/// A direction of gravity this near to one of the list is as good, rad.
+/// A gravity direction this close to one of the list replaces it, rad.
 const NEAR_RAD: f64 = 0.3;
 
-/// A result that is to be saved: its record, and the values of the rig file that follow from it, as TOML text.
+/// A result to save: its record, and the resulting values of the rig file, as TOML text.
 #[derive(Clone, Debug)]
 pub struct FrameSaving {
-    /// The record, without what it changes in the rig file.
+    /// The record, without its changes to the rig file.
     pub record: FrameCalibration,
     /// Keys with dots and their new values.
     pub numbers: Vec<(String, String)>,
@@ -83,17 +82,16 @@ pub struct FrameWizard {
     seen: FrameSample,
     seen_view: Option<UnitQuaternion<f64>>,
     paused: bool,
-    /// Poses of a list that were given up, and how long the present one gave nothing new, s.
+    /// Number of skipped poses of a list, and time without a new record for the current one, s.
     passed: (usize, f64),
-    /// Time of the loop, which starts at zero with every start of it, and time of the session, which goes on, s.
+    /// Loop time, which starts at zero with each start of the loop, and session time, which continues, s.
     clock_s: (f64, f64),
     report: Report<Outcome>,
-    /// What the last saved calibration changed, if the rig file still has it so.
+    /// Changes of the last saved calibration, if the rig file still has these values.
     undoable: Vec<RigChange>,
 }
 
 impl FrameWizard {
-    /// Without data.
     pub fn new(kind: Kind) -> Self {
         Self {
             kind,
@@ -112,7 +110,7 @@ impl FrameWizard {
         }
     }
 
-    /// Measures the other way or not; what was recorded the one way is no use for the other.
+    /// Selects the method; data recorded with one method are useless for the other.
     pub(super) fn choose_way(&mut self, other_way: bool) {
         if self.other_way != other_way {
             self.other_way = other_way;
@@ -136,7 +134,7 @@ impl FrameWizard {
         self.job.as_ref().is_some_and(|job| job.coverage().share >= 1.0)
     }
 
-    /// Begins anew, for this subject.
+    /// Restarts for this subject.
     fn begin(&mut self, subject: Option<Subject>) {
         let job = subject.as_ref().and_then(|subject| self.kind.job(subject, self.other_way));
         let other_way = self.other_way;
@@ -148,7 +146,7 @@ impl FrameWizard {
     /// Time of the session at this time of the loop, s.
     fn session_s(&mut self, loop_s: f64) -> f64 {
         let (last_s, session_s) = self.clock_s;
-        // After a new start of the loop there is a gap, which ends a pose.
+        // A restart of the loop creates a gap, which ends a pose.
         let way_s = if loop_s > last_s { loop_s - last_s } else { 1.0 };
         self.clock_s = (loop_s, session_s + way_s);
         self.clock_s.1
@@ -176,8 +174,8 @@ impl FrameWizard {
         }
     }
 
-    /// The pose of the list that is asked for: the first direction of gravity that nothing is near to yet, or the next one if that gave
-    /// nothing new, as with a sensor that is not mounted as the rig file says.
+    /// The requested pose of the list: the first gravity direction without a record nearby, or the next one if that gave
+    /// none, for example with a wrong sensor mount in the rig file.
     fn target(&self) -> PoseTarget {
         let (Some(job), Some(subject)) = (&self.job, &self.subject) else { return TARGETS[0] };
         let down = |sample: &FrameSample| {
@@ -224,7 +222,7 @@ impl FrameWizard {
         });
     }
 
-    /// Looks up what the last saved calibration changed; nothing if the rig file has other values now.
+    /// Finds the changes of the last saved calibration; none if the rig file has other values now.
     fn look_for_undo(&mut self, binding: &Binding) {
         let Some(store) = &binding.store else { return };
         let wrist = [binding.sensor.as_str(), binding.tool.as_str()];
@@ -248,7 +246,7 @@ impl Wizard for FrameWizard {
             (Some(before), Some(now)) => !before.is_same_place(now),
             (before, now) => before.is_some() != now.is_some(),
         };
-        // What was recorded belongs to the rig as it was then.
+        // Recorded data belong to the previous state of the rig.
         if changed && self.taken() == 0 {
             let step = self.frame.step;
             self.begin(binding.subject.clone());
@@ -256,7 +254,7 @@ impl Wizard for FrameWizard {
         } else if let (Some(subject), Some(now)) = (&mut self.subject, &binding.subject) {
             subject.serials.clone_from(&now.serials);
         }
-        // After a new start of the loop the sensor tells its number only after a while.
+        // After a restart of the loop the sensor reports its number only after a while.
         if self.frame.step == SAVE && !binding.sensor.is_empty() && self.frame.take_changed() {
             self.look_for_undo(binding);
         }
@@ -351,7 +349,7 @@ impl Wizard for FrameWizard {
     }
 
     fn start_over(&mut self) {
-        // The present rig comes with the next frame.
+        // The current rig arrives with the next frame.
         self.begin(None);
     }
 }

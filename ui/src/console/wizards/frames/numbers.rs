@@ -1,4 +1,4 @@
-//! The numbers of the rig file that a result changes. Lengths in m, rotations as roll, pitch, yaw in degrees.
+//! Values of the rig file that a result changes. Lengths in m, rotations as roll, pitch, yaw in degrees.
 
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use nima_core::{
@@ -10,11 +10,10 @@ use nima_core::{
 
 use super::{Subject, job::Outcome};
 
-/// Digits behind the point: hundredths of a millimetre, thousandths of a degree.
+/// Decimal places: hundredths of a millimetre, thousandths of a degree.
 const DIGITS_M: usize = 5;
 const DIGITS_DEG: usize = 3;
 
-/// What kind of number it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Metres,
@@ -28,7 +27,7 @@ pub(super) enum Unit {
 pub(super) struct Number {
     pub(super) key: String,
     pub(super) unit: Unit,
-    /// As the rig file has it; `None` if it does not have it.
+    /// Value in the rig file; `None` if it has none.
     pub(super) before: Option<Vec<f64>>,
     pub(super) after: Vec<f64>,
 }
@@ -42,18 +41,17 @@ impl Number {
         Self { key, unit, before: before.map(|before| before.as_slice().to_vec()), after: after.as_slice().to_vec() }
     }
 
-    /// Whether the file would say something else.
+    /// Whether the value in the file changes.
     pub(super) fn changes(&self) -> bool {
         let before = self.before.as_ref().map(|before| Self { after: before.clone(), ..self.clone() }.toml());
         before.is_none_or(|before| before != self.toml())
     }
 
-    /// The new value as it is written into the file.
     pub(super) fn toml(&self) -> String {
         let digits = if self.unit == Unit::Degrees { DIGITS_DEG } else { DIGITS_M };
         let number = |x: &f64| {
             let words = format!("{x:.digits$}");
-            // No minus in front of zero.
+            // Avoids `-0`.
             if words.trim_start_matches(['-', '0', '.']).is_empty() { format!("{:.digits$}", 0.0) } else { words }
         };
         match self.after.as_slice() {
@@ -63,7 +61,7 @@ impl Number {
     }
 }
 
-/// How the result changes a point or a frame, for a picture: before, if it was known, and after, in the same frame.
+/// Effect of the result on a point or a frame, for a drawing: before, if known, and after, in the same frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Effect {
     pub(super) before: Option<Isometry3<f64>>,
@@ -87,14 +85,14 @@ impl Effect {
         Some([by.translation.vector.norm(), by.rotation.angle().to_degrees()])
     }
 
-    /// Whether the change is within what the result is known to.
+    /// Whether the change is smaller than the uncertainty of the result.
     pub(super) fn is_within(&self, known_to: Sizes) -> bool {
         let within = |by: f64, most: Option<f64>| most.map_or(by <= 1e-9, |most| by <= most);
         self.change().is_some_and(|[m, deg]| within(m, known_to.place_m) && within(deg, known_to.angle_deg))
     }
 }
 
-/// The numbers that the result changes, and its effect; `None` without a result.
+/// The values that the result changes, and its effect; `None` without a result.
 pub(super) fn of(
     outcome: &Outcome,
     subject: &Subject,
@@ -110,7 +108,7 @@ pub(super) fn of(
     }
 }
 
-/// The axis of the shaft is moved across, parallel to itself, until it goes through the tip; its length follows.
+/// Moves the shaft's axis sideways, parallel to itself, until it passes through the tip; its length follows.
 fn tip(found: &TipFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
     let found_m = Point3::from(Vector3::from(found.tip_in_carrier_m));
     let tip_m = match found.carrier {
@@ -130,7 +128,7 @@ fn tip(found: &TipFound, subject: &Subject) -> Option<(Vec<Number>, Effect)> {
     Some((numbers, Effect::of_points(subject.tip_in_flange_m(), tip_m.coords)))
 }
 
-/// The marker is where it was on the flange, so that its place in the frame of a sensor that moved is another.
+/// The marker stays where it was on the flange, so its pose in the frame of a sensor that moved changes.
 fn marker_stays(subject: &Subject, flange_from_s1: &Isometry3<f64>) -> Vec<Number> {
     let Some([flange_from_m, _]) = subject.hand_eye() else { return Vec::new() };
     marker(subject, &(flange_from_s1.inverse() * flange_from_m))
@@ -153,7 +151,7 @@ fn hand_eye(found: &HandEyeFound, subject: &Subject) -> (Vec<Number>, Effect) {
     let mut numbers = marker(subject, &s1_from_m);
     numbers.push(Number::three(subject.key("base_from_c_m"), Unit::Metres, set.base_from_c_m, place_m));
     numbers.push(Number::three(subject.key("base_from_c_deg"), Unit::Degrees, set.base_from_c_deg, angles_deg));
-    // A rig file that does not tell the marker's place tells its orientation at least.
+    // A rig file without the marker's pose has at least its orientation.
     let before = subject.s1_from_m().or_else(|| {
         let turn = from_roll_pitch_yaw_deg(&set.s1_from_m_deg?);
         Some(Isometry3::from_parts(s1_from_m.translation, turn))
@@ -173,7 +171,7 @@ fn trocar(found: &TrocarFound, subject: &Subject) -> Option<(Vec<Number>, Effect
     Some((vec![number], Effect::of_points(before_m, after_m)))
 }
 
-/// The table's frame is the workspace: the base gets its place in it, and the trocar, which has not moved, goes along.
+/// The table's frame is the workspace: the base gets its pose in it, and the trocar, which has not moved, is transformed too.
 fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
     let before = subject.arm.world_from_base;
     let after = found.from_table.pose().inverse();
@@ -188,7 +186,7 @@ fn table(found: &TableFound, subject: &Subject) -> (Vec<Number>, Effect) {
         Number::three(subject.key("rcm.trocar_m"), Unit::Metres, Some(rcm.trocar_m), trocar_m),
         Number::three(subject.key("rcm.inward"), Unit::One, Some(rcm.inward), moved.rotation * rcm.inward),
     ];
-    // The picture shows the table in the frame of the base, where it was touched.
+    // The drawing shows the table in the frame of the base, where it was touched.
     (numbers, Effect { before: Some(before.inverse()), after: found.from_table.pose() })
 }
 
@@ -203,7 +201,7 @@ fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f
         return (vec![number], Effect::of_turns(before, after));
     }
     let after = subject.arm.world_from_base.rotation * found.from_view();
-    // With a marker on the endoscope the picture's turn against the marker is what the rig file has.
+    // With a marker on the endoscope, the rig file contains the rotation of the image relative to the marker.
     if let (Some(endoscope), Some(seen)) = (&subject.endoscope, seen_view) {
         let n_from_view = from_roll_pitch_yaw_deg(&endoscope.n_from_view_deg) * seen.inverse() * after;
         let key = "devices.endoscope.n_from_view_deg".to_owned();
@@ -217,7 +215,7 @@ fn view(found: &ViewFound, subject: &Subject, seen_view: Option<UnitQuaternion<f
     (vec![number], Effect::of_turns(from_roll_pitch_yaw_deg(&before_deg), after))
 }
 
-/// A mount that agrees stays: a drawing tells an angle better than a weight does.
+/// A mount that agrees stays: a design drawing gives an angle more accurately than a weight.
 fn mount(found: &SensorMountFound, subject: &Subject) -> (Vec<Number>, Effect) {
     let before = subject.arm.flange_from_s1;
     let after = found.flange_from_s1();

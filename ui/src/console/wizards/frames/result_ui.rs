@@ -1,4 +1,4 @@
-//! The step that shows a result: verdict with cause and cure, errors, and what changes in the rig file.
+//! The step that shows a result: verdict with reason and remedy, errors, and changes to the rig file.
 
 use egui::{Grid, Ui, vec2};
 use nalgebra::UnitQuaternion;
@@ -19,7 +19,7 @@ use crate::{
     words::{self, Words as _},
 };
 
-/// Draws the result; `units` is what was recorded.
+/// Draws the result; `units` is the name of the recorded items.
 pub(super) fn outcome_ui(
     ui: &mut Ui,
     outcome: &Outcome,
@@ -116,7 +116,7 @@ fn changed(before: &[f64], number: &Number) -> String {
     format!("{}{name}", by.join(", "))
 }
 
-/// To so many digits, without a minus in front of zero.
+/// Rounds to this many digits and avoids `-0`.
 fn rounded(x: f64, digits: usize) -> f64 {
     let scale = (0..digits).fold(1.0, |scale, _| scale * 10.0);
     (x * scale).round() / scale + 0.0

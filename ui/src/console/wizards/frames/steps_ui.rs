@@ -1,4 +1,4 @@
-//! The first two steps: what must be there before the recording, and the recording with its instructions.
+//! The first two steps: the required sources before the recording, and the recording with its instructions.
 
 use egui::{Button, RichText, Ui};
 use nima_core::calibration::frames::Source;

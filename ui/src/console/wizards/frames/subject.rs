@@ -1,4 +1,4 @@
-//! The arm that is calibrated, as its rig file describes it now, and the serial numbers of what it is measured with.
+//! The arm to calibrate, from its current rig file, and the serial numbers of the devices that measure it.
 
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, UnitQuaternion, Vector3};
 use nima_core::{calibration::frames::Serials, frames::from_roll_pitch_yaw_deg, kinematics::Arm};
@@ -10,17 +10,15 @@ use nima_machine::{
 /// The arm pair of a side in a rig file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subject {
-    /// Its side.
     pub side: Side,
-    /// Its devices, and how they are mounted.
+    /// Its devices, and their mounts.
     pub set: ArmSet,
     /// The mapping from hand to tip.
     pub teleoperation: Teleoperation,
     /// The marker on the endoscope, if there is one.
     pub endoscope: Option<EndoscopeSettings>,
-    /// The arm in this place.
     pub(super) arm: Geometry,
-    /// What it is measured with.
+    /// Serial numbers of the measuring devices.
     pub serials: Serials,
 }
 
@@ -59,12 +57,12 @@ impl Subject {
         Some(Self { side, set, teleoperation, endoscope, arm, serials })
     }
 
-    /// The same numbers, whatever it is measured with.
+    /// Whether the values are equal, whatever device measures them.
     pub(super) fn is_same_place(&self, other: &Self) -> bool {
         Self { serials: Serials::default(), ..self.clone() } == Self { serials: Serials::default(), ..other.clone() }
     }
 
-    /// The same arm, as its mount describes it to the mathematics.
+    /// The arm for the kinematics.
     pub(super) fn arm(&self) -> Option<Arm> {
         Arm::new(&self.set.mount).ok()
     }
@@ -79,7 +77,7 @@ impl Subject {
         self.arm.world_from_base.rotation.inverse() * Vector3::z()
     }
 
-    /// The marker in the wrist sensor's frame, if its place is known.
+    /// The marker in the wrist sensor's frame, if known.
     pub(super) fn s1_from_m(&self) -> Option<Isometry3<f64>> {
         from(self.set.s1_from_m_m?, self.set.s1_from_m_deg?)
     }
@@ -89,7 +87,7 @@ impl Subject {
         from(self.set.base_from_c_m?, self.set.base_from_c_deg?)
     }
 
-    /// Marker on the flange and camera beside the base: what the hand-eye calibration has found.
+    /// Result of the hand-eye calibration: marker on the flange, and camera relative to the base.
     pub(super) fn hand_eye(&self) -> Option<[Isometry3<f64>; 2]> {
         Some([self.arm.flange_from_s1 * self.s1_from_m()?, self.base_from_c()?])
     }

@@ -89,7 +89,7 @@ impl Bench {
     }
 }
 
-/// A turn that differs from those of other numbers: tilts to all sides, and turns about the shaft.
+/// A rotation different from those of other numbers: tilts to all sides, and rotations about the shaft.
 fn turn(i: u32) -> UnitQuaternion<f64> {
     let i = f64::from(i);
     let tilt = Vector3::new(0.45 * (2.4 * i).sin(), 0.45 * (2.4 * i).cos(), 0.0);
@@ -183,7 +183,7 @@ fn a_mount_is_recorded_while_the_arm_turns_about_the_vertical() {
     assert!(bench.wizard.numbers().is_empty(), "a mount that agrees changes nothing");
 }
 
-/// Flange and marker, with marker and camera in known places.
+/// Flange and marker, with marker and camera in known poses.
 fn seen(i: u32, flange_from_m: &Isometry3<f64>, base_from_c: &Isometry3<f64>) -> FrameSample {
     let place_m = Vector3::new(0.4, 0.02 * f64::from(i % 5), 0.3);
     let flange = at(place_m, turn(i));
@@ -212,7 +212,7 @@ fn hand_eye_gives_marker_and_camera_and_opens_the_tracker_for_the_trocar() {
     let off = [found.inverse() * flange_from_m, camera.inverse() * base_from_c];
     assert!(off.iter().all(|off| off.translation.vector.norm() < 5e-5 && off.rotation.angle() < 5e-5), "{off:?}");
     assert_eq!(Kind::Trocar.other_way_needs(&bench.subject()), Ok(()));
-    // Two of the keys were not there: undoing takes them away again.
+    // Two of the keys did not exist: undo removes them again.
     bench.undo();
     assert!(bench.subject().hand_eye().is_none());
     assert!(!std::fs::read_to_string(&bench.rig_name).unwrap().contains("base_from_c_m"));

@@ -121,7 +121,7 @@ fn mae_of(part: &Part, method: &str, axis: usize) -> String {
     stats.map_or_else(|| "-".to_owned(), |stats| format!("{:.3}", stats.mae))
 }
 
-/// Widest head of a column of errors.
+/// Maximum width of the header of an error column.
 const HEAD: f32 = 100.0;
 
 fn figures_ui(ui: &mut Ui, checked: &Checked) {

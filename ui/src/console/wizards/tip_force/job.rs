@@ -1,4 +1,4 @@
-//! Background work of the wizard: training and judging. The window never waits for it.
+//! Background work of the wizard: training and evaluation. The window never waits for it.
 
 use std::{
     fs,
@@ -23,7 +23,7 @@ use nima_training::{Evaluation, Part, Progress, check, train_model};
 use crate::console::text;
 use crate::language::{self, Language};
 
-/// A background thread. Dropping this requests it to stop; it then ends by itself, and its result is discarded.
+/// A background thread. Dropping this requests it to stop; it then ends on its own, and its result is discarded.
 #[derive(Debug)]
 pub(super) struct Job<T> {
     cancel: Arc<AtomicBool>,
@@ -73,7 +73,7 @@ impl<T> Drop for Job<T> {
 pub(super) struct Curve {
     /// Epoch, and logarithm (base 10) of the loss on training rows.
     pub(super) training: Vec<[f64; 2]>,
-    /// The same on held-out rows.
+    /// Logarithm of the loss on held-out rows.
     pub(super) held_out: Vec<[f64; 2]>,
     share: f64,
 }
@@ -98,7 +98,7 @@ impl Curves {
         curve.share = if now.finished { 1.0 } else { now.epoch as f64 / now.epochs_max.max(1) as f64 };
     }
 
-    /// Share of the work that is done, 0 to 1.
+    /// Fraction of the work that is done, 0 to 1.
     pub(super) fn share(&self) -> f64 {
         self.members.iter().map(|curve| curve.share).sum::<f64>() / self.members.len().max(1) as f64
     }
@@ -107,23 +107,19 @@ impl Curves {
 /// Losses shared by two threads.
 pub(super) type Shared = Arc<Mutex<Curves>>;
 
-/// Locks the losses; if a thread has panicked, they are used as they are.
+/// Locks the losses; if a thread has panicked, they are used in their last state.
 pub(super) fn look(curves: &Mutex<Curves>) -> MutexGuard<'_, Curves> {
     curves.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What to train, and where to save the data.
+/// Inputs of the training, and the store for its data.
 #[derive(Debug)]
 pub(super) struct Order {
-    /// The recording.
     pub(super) recorder: Recorder,
     /// Keep the existing data set, which is from another recording.
     pub(super) keep_previous: bool,
-    /// Settings of the training.
     pub(super) settings: TrainingSettings,
-    /// Sensor and tool.
     pub(super) bound: [String; 2],
-    /// Store for the data set.
     pub(super) store: Store,
 }
 
@@ -155,7 +151,7 @@ pub(super) fn train(order: Order, curves: &Mutex<Curves>, cancel: &AtomicBool) -
 /// Bins of the histogram of predictions without contact, and their width, N.
 pub(super) const BINS: usize = 41;
 pub(super) const BIN_N: f64 = 0.01;
-/// Most points of a regression plot.
+/// Maximum number of points in a regression plot.
 const POINTS: usize = 700;
 
 /// Result of a check, prepared for drawing.
@@ -167,12 +163,12 @@ pub(super) struct Checked {
     pub(super) part: Part,
     /// Per axis: measured and predicted force, N; a subset of the rows.
     pub(super) points: [Vec<[f64; 2]>; 3],
-    /// Per axis: share of rows without contact in each bin; the middle one is around zero, the outer ones include
+    /// Per axis: fraction of rows without contact in each bin; the middle bin is around zero, the outer ones include
     /// everything beyond.
     pub(super) bins: [[f64; BINS]; 3],
 }
 
-/// Judges a model on a new recording, which is saved beside the data set. If the training data were incomplete
+/// Evaluates a model on a new recording, which is saved next to the data set. If the training data were incomplete
 /// (`narrow`), the model is not accepted, whatever its errors.
 pub(super) fn judge(
     recorder: &Recorder,
@@ -187,7 +183,7 @@ pub(super) fn judge(
     let (mut check, evaluation) = check(&mut estimator, &data).map_err(|error| error.to_string())?;
     if let (Some(goal), Verdict::Accepted) = (narrow, check.judgement.verdict) {
         check.judgement.verdict = Verdict::InsufficientMotion;
-        // It stands in the file.
+        // The reason is stored in the file.
         let reason = || text::tip_force::trained_on_too_little(&goal.name().to_lowercase());
         check.judgement.reason = language::with(Language::English, reason);
     }

@@ -1,4 +1,4 @@
-//! First page of the wizard: whether everything for a recording is present, and what to do if not.
+//! First page of the wizard: the sources required for a recording, with remedies for missing ones.
 
 use egui::Ui;
 use nima_machine::messages::Tick;
@@ -34,12 +34,12 @@ pub(super) fn sources(tick: &Tick) -> Sources {
 }
 
 impl TipForceWizard {
-    /// Whether the wrist sensor delivers and has told its serial number.
+    /// Whether the wrist sensor delivers and has reported its serial number.
     pub(super) const fn has_sensor(&self, binding: &Binding) -> bool {
         self.sources[0] && !binding.sensor.is_empty()
     }
 
-    /// Whether a recording can begin; the first reason if not.
+    /// Whether a recording can start; the first reason if not.
     pub(super) fn may_record(&self, binding: &Binding) -> Result<(), &'static str> {
         if !self.has_sensor(binding) {
             return Err(text::correspondence::NEEDS_WRIST_SENSOR.get());
@@ -57,7 +57,7 @@ impl TipForceWizard {
             let known = binding.correspondence.is_some();
             let correspondence = (text::tip_force::SOURCE_CORRESPONDENCE, text::tip_force::SOURCE_NO_CORRESPONDENCE);
             let lines = SOURCES.into_iter().zip(self.sources).chain([(correspondence, known)]);
-            // Without the wrist sensor nothing is known of the others, nor which calibrations are those of this arm.
+            // Without the wrist sensor, the state of the others and the calibrations of this arm are unknown.
             let has_sensor = self.has_sensor(binding);
             for (place, ((name, otherwise), there)) in lines.enumerate() {
                 match (place, has_sensor) {

@@ -1,4 +1,4 @@
-//! The recording page: the task, the number of rows, what is missing, and three maps of the coverage.
+//! The recording page: the task, the number of rows, missing goals, and three maps of the coverage.
 
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
 use nima_core::tip_force::Coverage;

@@ -1,4 +1,4 @@
-//! A recording that can be paused and continued, with a clock that is continuous over restarts of the loop.
+//! A recording that can be paused and resumed, with a clock that is continuous over restarts of the loop.
 
 use nima_core::calibration::correspondence::Correspondence;
 use nima_machine::{messages::Tick, rig::Prompt};
@@ -9,7 +9,7 @@ use crate::{console::text, words::Words as _};
 /// A gap in the ticks longer than this, s, means that the rig was not observed meanwhile.
 const HOLE_S: f64 = 1.0;
 
-/// A continuous clock: the loop's starts at zero with every start of it.
+/// A continuous clock: the loop's clock starts at zero with each start.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Clock {
     begin_s: f64,
@@ -40,7 +40,7 @@ pub(super) struct Take {
     pub(super) running: bool,
     /// Whether the wrist sensor is silent.
     silent: bool,
-    /// Present instruction to the person.
+    /// Current instruction to the person.
     asked: Prompt,
 }
 
@@ -62,19 +62,17 @@ impl Take {
         }
     }
 
-    /// Pauses: the rig may be touched, so a rest period is required before continuing.
+    /// Pauses: the rig may be touched, so a rest period is required before resuming.
     pub(super) fn break_off(&mut self) {
         self.recorder.interrupt();
         self.running = false;
         self.asked = Prompt::Rest;
     }
 
-    /// Present instruction to the person at the arm.
     pub(super) const fn prompt(&self) -> Prompt {
         if self.running { self.asked } else { Prompt::Rest }
     }
 
-    /// State of the recording as text.
     pub(super) fn phase_words(&self) -> String {
         if self.recorder.rows() == MOST_ROWS {
             return text::tip_force::PHASE_FULL.get().to_owned();
@@ -90,7 +88,6 @@ impl Take {
     }
 }
 
-/// Text of the instruction.
 pub(super) fn words(prompt: Prompt) -> &'static str {
     match prompt {
         Prompt::Work => text::tip_force::TASK_WORK.get(),

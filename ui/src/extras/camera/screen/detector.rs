@@ -1,4 +1,4 @@
-//! Looks for the board on a thread of its own, one picture at a time, so that the window never waits for it.
+//! Searches for the board on a separate thread, one image at a time, so that the window never waits for it.
 
 use std::{
     sync::{
@@ -12,7 +12,7 @@ use egui::Context;
 use nima_camera::{Grey, Sight, Unseen, find};
 use nima_endoscope::{Board, Picture};
 
-/// A picture and the board in it.
+/// An image and the board in it.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) picture: Arc<Picture>,
@@ -20,7 +20,7 @@ pub(super) struct Found {
     pub(super) sight: Result<Sight, Unseen>,
 }
 
-/// The thread, which ends with this.
+/// The thread, which ends when this is dropped.
 #[derive(Debug)]
 pub(super) struct Detector {
     asked: Sender<(Arc<Picture>, Board)>,
@@ -30,7 +30,7 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    /// `None` if the operating system gives no thread.
+    /// `None` if no thread can be created.
     pub(super) fn new(ctx: &Context) -> Option<Self> {
         let (asked, pictures) = channel::<(Arc<Picture>, Board)>();
         let (finds, found) = channel();
@@ -48,7 +48,7 @@ impl Detector {
         Some(Self { asked, found, busy: false, last: 0 })
     }
 
-    /// Shows it the newest picture; what is passed while it looks at another one is left out.
+    /// Passes the newest image; images that arrive during a search are skipped.
     pub(super) fn show(&mut self, (number, picture): (u64, Arc<Picture>), board: Board) {
         if !self.busy && number != self.last {
             self.busy = self.asked.send((picture, board)).is_ok();
@@ -56,7 +56,7 @@ impl Detector {
         }
     }
 
-    /// What it has found since the last call.
+    /// Results since the last call.
     pub(super) fn take(&mut self) -> Option<Found> {
         let found = self.found.try_recv().ok();
         self.busy &= found.is_none();

@@ -1,4 +1,4 @@
-//! The wizard of the endoscope's camera: check, views of a board, the lens, the corners touched with the tip, save. It writes into the rig file.
+//! The Camera wizard: check, views of a board, the lens, the corners touched with the tip, save. It writes to the rig file.
 
 mod detector;
 mod picture;
@@ -51,20 +51,19 @@ const VIEWS: usize = 1;
 const LENS: usize = 2;
 const TOUCH: usize = 3;
 const SAVE: usize = 4;
-/// A board that is seen so far from where it lay has moved, px of a picture 1280 wide.
+/// A board farther than this from its earlier position has moved, px of an image 1280 wide.
 const MOVED_PX: f64 = 3.0;
 
-/// State of the wizard.
 pub(super) struct CameraWizard {
     frame: Frame,
     corners: String,
     square_mm: f64,
     keeps_lens: bool,
-    /// What the rig file of this name says.
+    /// The endoscope in the rig file.
     endoscope: Option<Endoscope>,
     rig: Option<String>,
     detector: Option<Detector>,
-    /// The newest picture that was looked at, until it is uploaded.
+    /// The newest searched image, until it is uploaded.
     fresh: Option<Arc<Picture>>,
     shown: Shown,
     sight: Option<Sight>,
@@ -72,15 +71,15 @@ pub(super) struct CameraWizard {
     session: Option<Session>,
     report: Option<Report>,
     tip: Tip,
-    /// The marker on the endoscope while the board lies still, where its place is known.
+    /// The endoscope's marker while the board is at rest, if its pose is known.
     marker: Marker,
-    /// The board as it lies while it is touched, and a sight of it before, which must be the same.
+    /// The board at rest while it is touched, and the previous sight, which must be the same.
     base: Option<Sight>,
     lying: Option<Sight>,
     moved: bool,
     touches: Vec<Touch>,
     placed: Option<Result<Placed, PlaceError>>,
-    /// What would be saved, and what was.
+    /// Changes to be saved, and saved changes.
     pending: Option<Vec<RigChange>>,
     undoable: Vec<RigChange>,
 }
@@ -153,7 +152,8 @@ impl CameraWizard {
         offer
     }
 
-    /// The board while it is to be touched: seen twice at the same place it lies still; seen elsewhere later it has moved.
+    /// Checks that the board is at rest before it is touched: it must be seen twice at the same position; a later sight
+    /// elsewhere means that it has moved.
     fn lie(&mut self, sight: &Sight) {
         let limit_px = MOVED_PX * sight_width(self.session.as_ref()) / 1280.0;
         match &self.base {
@@ -178,12 +178,11 @@ impl CameraWizard {
         self.session.as_ref().map_or(0, |session| session.views().len())
     }
 
-    /// The lens of the rig file.
     fn rig_lens(&self) -> Option<Lens> {
         self.endoscope.as_ref()?.camera.as_ref().map(lens_of)
     }
 
-    /// The lens that is used from here on.
+    /// The lens used from here on.
     fn lens(&self) -> Option<Lens> {
         if self.keeps_lens {
             return self.rig_lens();
@@ -192,7 +191,7 @@ impl CameraWizard {
         report.lens.as_ref().map(|found| found.lens)
     }
 
-    /// How it stands with the board in the newest picture.
+    /// State of the board in the newest image.
     fn told(&self) -> String {
         match &self.last {
             None => texts::LOOKING.get().to_owned(),
@@ -209,7 +208,7 @@ impl CameraWizard {
         vec![[0, 0], [right, 0], [right, low], [0, low], [right / 2, low / 2]]
     }
 
-    /// Number of the corner that is to be touched next.
+    /// Number of the next corner to touch.
     fn next_corner(&self) -> Option<usize> {
         self.base.as_ref()?;
         let corner = *self.wanted().get(self.touches.len())?;
@@ -233,7 +232,7 @@ impl CameraWizard {
             .map(|((board, lens), base)| place(&board, &lens, base, &self.touches));
     }
 
-    /// The board lies elsewhere now: what was touched is forgotten.
+    /// The board was moved: the touched corners are discarded.
     fn lay_anew(&mut self) {
         self.base = None;
         self.lying = None;
@@ -243,7 +242,7 @@ impl CameraWizard {
         self.find_place();
     }
 
-    /// What is saved of the place: on the endoscope's marker, if the tracker saw it while the board lay.
+    /// The pose to save: on the endoscope's marker, if the tracker saw it while the board was at rest.
     fn found_place(&self) -> Option<FoundPlace> {
         let placed = self.good_place()?;
         let world_from_camera = placed.world_from_camera;
@@ -287,7 +286,7 @@ impl Wizard for CameraWizard {
             self.endoscope = RigConfig::load(&binding.rig).ok().and_then(|rig| rig.endoscope);
             self.keeps_lens &= self.rig_lens().is_some();
             if matches!(self.frame.saved, Some(Ok(_))) && self.frame.step == SAVE {
-                // What was saved can be undone; what was undone can be saved again.
+                // Saved changes can be undone; undone changes can be saved again.
                 let saved = self.pending.take().unwrap_or_default();
                 self.undoable = if self.undoable.is_empty() { saved } else { Vec::new() };
             }

@@ -1,4 +1,4 @@
-//! The endoscope's picture with the corners that were found in it, and the map of where corners have been.
+//! The endoscope image with the detected corners, and the map of the covered area.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use nima_camera::{CELLS, Coverage, Sight};
@@ -14,7 +14,7 @@ pub(super) const MAP_WIDTH: f32 = 190.0;
 const CORNER: f32 = 3.0;
 const MARK: f32 = 11.0;
 
-/// The picture that is shown, uploaded.
+/// The displayed image, uploaded.
 #[derive(Default)]
 pub(super) struct Shown {
     screen: DoubleBuffer,
@@ -27,13 +27,13 @@ impl Shown {
         self.size_px = Some(picture.size_px);
     }
 
-    /// There is a picture.
+    /// Whether an image was received.
     pub(super) const fn has_come(&self) -> bool {
         self.size_px.is_some()
     }
 }
 
-/// Draws it as wide as this, with the corners of the board; `marked` is the corner to be touched.
+/// Draws it with this width, with the corners of the board; `marked` is the corner to touch.
 pub(super) fn picture_ui(
     ui: &mut Ui,
     width: f32,
@@ -57,7 +57,7 @@ pub(super) fn picture_ui(
     };
     let per_row = board.corners()[0];
     for index in 0..board.count() {
-        // Rows are joined, so that a board that was read the wrong way round is seen.
+        // Rows are joined, so that a board that was read in the wrong direction is noticed.
         if let (Some(from), Some(to)) = (at(index), at(index + 1).filter(|_| (index + 1) % per_row != 0)) {
             painter.line_segment([from, to], Stroke::new(1.0, theme::DARK.measured));
         }
@@ -72,7 +72,7 @@ pub(super) fn picture_ui(
     }
 }
 
-/// Draws where corners have been: bright cells, dark ones without; nothing where the picture is black.
+/// Draws the covered area: bright cells have corners, dark ones do not; nothing where the image is black.
 pub(super) fn coverage_ui(ui: &mut Ui, coverage: &Coverage, size_px: [usize; 2]) {
     let height = MAP_WIDTH * size_px[1] as f32 / size_px[0].max(1) as f32;
     let (rect, response) = ui.allocate_exact_size(vec2(MAP_WIDTH, height + 20.0), Sense::hover());

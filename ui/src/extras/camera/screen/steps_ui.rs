@@ -1,4 +1,4 @@
-//! What each step shows.
+//! Content of each step.
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use nima_camera::{Ask, Lack, Report};
@@ -22,7 +22,7 @@ use crate::{
     extras::camera::{text as texts, words},
 };
 
-/// Widest picture, points: with the map beside it, and what is to be done above it, it fits a window of 1280 x 720.
+/// Maximum image width, points: with the map next to it and the instruction above it, it fits a window of 1280 x 720.
 const PICTURE: f32 = 500.0;
 
 impl CameraWizard {
@@ -180,10 +180,10 @@ impl CameraWizard {
         }
     }
 
-    /// The picture with what was found in it.
+    /// The image with the detected corners.
     pub(super) fn live_ui(&self, ui: &mut Ui, marked: Option<usize>) {
         let width = (ui.available_width() - MAP_WIDTH - 16.0).clamp(160.0, PICTURE);
-        // While the board lies still, its corners stay where they were seen, whatever hides them.
+        // While the board is at rest, its corners stay at their positions, whatever hides them.
         let sight = if marked.is_some() { self.base.as_ref() } else { self.sight.as_ref() };
         let board = self.board().ok();
         let words = texts::picture(&self.told());
@@ -217,7 +217,7 @@ fn lens_figures(ui: &mut Ui, report: &Report) {
     figure(ui, texts::BEND.get(), texts::bend(&lens.bend, &sd.bend), texts::BEND_HOVER.get());
 }
 
-/// Whether a lens may be used.
+/// Whether a lens can be used.
 pub(super) fn is_good(report: &Report) -> bool {
     report.verdict() == Verdict::Accepted
 }

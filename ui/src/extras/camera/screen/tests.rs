@@ -11,7 +11,7 @@ fn lens() -> Lens {
     Lens { bend: Bend::radial(-0.25), ..Lens::simple([1280, 720], 740.0, 0.0) }
 }
 
-/// What the detector finds of a board at this place, without a picture.
+/// Result of the detector for a board at this pose, without an image.
 fn found(camera_from_board: &Isometry3<f64>) -> Found {
     let place = |place_m: &Vector3<f64>| lens().project(&(camera_from_board * nalgebra::Point3::from(*place_m)).coords);
     let corners_px: Option<Vec<_>> = board().places_m().iter().map(place).collect();
@@ -33,7 +33,7 @@ fn shown(wizard: &mut CameraWizard, camera_from_board: &Isometry3<f64>) {
     wizard.take(found(camera_from_board));
 }
 
-/// A wizard whose lens is found.
+/// A wizard with a lens.
 fn with_lens() -> CameraWizard {
     let mut wizard = CameraWizard::default();
     wizard.go_to(VIEWS);
@@ -99,7 +99,7 @@ fn lens_and_touched_corners_place_the_camera_and_a_board_that_moved_does_not() {
     assert!(wizard.proof().unwrap().contains("touched corners"));
     let place = wizard.found_place().unwrap();
     assert!(!place.on_marker && place.pose == placed_at(&wizard));
-    // A tracker sees the endoscope's marker: the place is that on the marker.
+    // A tracker sees the endoscope's marker: the pose is relative to the marker.
     let world_from_n = Isometry3::new([0.0, -0.2, 0.3].into(), [0.4, 1.0, -2.0].into());
     for step in 0..200 {
         wizard.marker.note(f64::from(step) * 0.01, Some(&world_from_n));

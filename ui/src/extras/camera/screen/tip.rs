@@ -1,14 +1,14 @@
-//! The instrument's tip, while it is held still at a corner of the board; and the endoscope's marker meanwhile.
+//! The instrument's tip while it is held still on a corner of the board, and the endoscope's marker meanwhile.
 
 use std::collections::VecDeque;
 
 use nalgebra::{Isometry3, Vector3};
 use nima_endoscope::steadied;
 
-/// Time between two places that are kept, s, and how long they are, s.
+/// Interval of stored positions, s, and storage time, s.
 const STEP_S: f64 = 0.01;
 const KEPT_S: f64 = 0.4;
-/// Held for so long, s, and no place farther from the mean than this, m.
+/// Required holding time, s, and maximum distance from the mean, m.
 const HELD_S: f64 = 0.3;
 const STILL_M: f64 = 0.3e-3;
 
@@ -24,7 +24,7 @@ impl Tip {
             return;
         }
         match self.kept.back() {
-            // A loop that was started again begins at zero.
+            // A restarted loop begins at zero.
             Some((last_s, _)) if t_s < *last_s => self.kept.clear(),
             Some((last_s, _)) if t_s < last_s + STEP_S => return,
             _ => {}
@@ -35,7 +35,7 @@ impl Tip {
         }
     }
 
-    /// Its place, m; `None` while it moves.
+    /// Its position, m; `None` while it moves.
     pub(super) fn still_m(&self) -> Option<Vector3<f64>> {
         let first = self.kept.front()?;
         let last = self.kept.back()?;
@@ -47,17 +47,16 @@ impl Tip {
     }
 }
 
-/// So much of the marker is averaged, s.
+/// Averaging time of the marker, s.
 const MARKED_S: f64 = 5.0;
 
-/// The endoscope's marker in the workspace.
 #[derive(Debug, Default)]
 pub(super) struct Marker {
     kept: VecDeque<(f64, Isometry3<f64>)>,
 }
 
 impl Marker {
-    /// A tick; both sides tell the same.
+    /// Adds a tick; both sides report the same marker.
     pub(super) fn note(&mut self, t_s: f64, world_from_n: Option<&Isometry3<f64>>) {
         if self.kept.back().is_some_and(|(last_s, _)| t_s < *last_s) {
             self.kept.clear();
@@ -71,7 +70,7 @@ impl Marker {
         }
     }
 
-    /// Its mean without noise; `None` where it was not seen.
+    /// Its mean without noise; `None` if it was not seen.
     pub(super) fn world_from_n(&self) -> Option<Isometry3<f64>> {
         steadied(self.kept.iter().rev().map(|(_, pose)| *pose))
     }

@@ -1,8 +1,8 @@
-//! `nima emulate link`: a bad network between a console and a follower, made on purpose and from a seed, without special rights.
+//! `nima emulate link`: a bad network between a console and a follower, generated from a seed, without special rights.
 //!
-//! `--set to=HOST[:PORT]` is the follower, `--set at=ADDRESS[:PORT]` where consoles find it here (port 47151 of this machine by default).
-//! What is wrong with the line is set by the keys of [`nima_network::impairment::Settings`], for both directions or, behind `there.` or
-//! `back.`, for one.
+//! `--set to=HOST[:PORT]` is the follower, `--set at=ADDRESS[:PORT]` the address for consoles (by default port 47151 of this
+//! machine). The keys of [`nima_network::impairment::Settings`] set the impairments, for both directions or, after `there.`
+//! or `back.`, for one.
 
 use anyhow::{Context as _, bail};
 use nima_network::{
@@ -32,12 +32,11 @@ impl Default for Line {
     }
 }
 
-/// The line of these settings.
 fn line(set: &[String]) -> anyhow::Result<Line> {
     let mut text = String::new();
     for setting in set {
         let Some((key, value)) = setting.split_once('=') else {
-            bail!("--set {setting}: give a key and a value, such as delay_s=0.02");
+            bail!("--set {setting}: enter a key and a value, such as delay_s=0.02");
         };
         let key = key.trim();
         let value = value.trim();

@@ -1,7 +1,7 @@
-//! `nima emulate rig`: every device of a rig file at its address, with one simulated world; `--rig F`, `--scene F`.
-//! Lines on standard input: `pedal BITS` presses the pedal's switches (the first in the lowest bit) until the next such line;
-//! `screen SIDE TASK PROMPT` shows the technician at the arms what the screen shows; `truth HZ` prints the true forces at the
-//! tips from now on, so many times a second.
+//! `nima emulate rig`: every device of a rig file at its address, with one simulated world; `--rig F`, `--scene F`. Lines on
+//! standard input: `pedal BITS` presses the pedal's switches (the first in the lowest bit) until the next such line; `screen
+//! SIDE TASK PROMPT` shows the content of the screen to the technician at the arms; `truth HZ` prints the true forces at the
+//! tips from now on, at this rate.
 
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ pub(super) fn run(rig: &str, scene: &str, until_input_ends: bool) -> anyhow::Res
     super::serve(&served, until_input_ends, |line| obey(&emulated, line))
 }
 
-/// Obeys a line; returns false for one that it does not know.
+/// Handles a line; returns false for an unknown one.
 fn obey(emulated: &EmulatedRig, line: &str) -> bool {
     press(emulated, line) || show(emulated, line) || testify(emulated, line)
 }

@@ -1,4 +1,4 @@
-//! What the window shows of the studies.
+//! The studies in the window.
 
 mod stable_gain;
 mod tradeoff;

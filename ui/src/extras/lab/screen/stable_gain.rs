@@ -1,5 +1,5 @@
-//! Shows the stability map below the gain slider: a strip that is solid where a gripping hand is stable and broken
-//! where it is not, for the present mode, delay and contact stiffness.
+//! Shows the stability map below the gain slider: a strip that is solid where a gripping hand is stable and broken where it
+//! is not, for the current mode, delay and contact stiffness.
 
 use egui::{Rect, Sense, Stroke, Ui, pos2, vec2};
 use nima_study::stability_map::{StabilityMap, Verdict};
@@ -15,8 +15,8 @@ const PARTS: u32 = 60;
 
 /// Draws the strip and its text; `rail` is the slider's rectangle, `limit` the gain at its right end.
 ///
-/// In a scope of its own: what it shows changes with the first contact, and what stands below must keep its identity, or
-/// a slider would slip from the hand in that moment.
+/// In a separate scope: the content changes with the first contact, and the widgets below must keep their ids, or a slider
+/// drag would end at that moment.
 pub(in crate::extras::lab) fn stable_gain_ui(ui: &mut Ui, live: &Live, rail: Rect, limit: f64) {
     ui.scope(|ui| strip_ui(ui, live, rail, limit));
 }

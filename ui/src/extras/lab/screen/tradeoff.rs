@@ -24,7 +24,6 @@ use crate::{
 const SCENE_S: f64 = 6.0;
 const BUTTON: egui::Vec2 = vec2(120.0, 30.0);
 
-/// State of the panel.
 #[derive(Debug, Default)]
 pub(in crate::extras::lab) struct Tradeoff {
     job: Option<Job>,
@@ -33,7 +32,7 @@ pub(in crate::extras::lab) struct Tradeoff {
     message: String,
 }
 
-/// A sweep in the background. Dropping it requests it to stop.
+/// A background sweep. Dropping it requests its end.
 #[derive(Debug)]
 struct Job {
     cancel: Arc<AtomicBool>,
@@ -50,8 +49,7 @@ impl Job {
         let progress = Arc::new([AtomicUsize::new(0), AtomicUsize::new(1)]);
         let stop = Arc::clone(&cancel);
         let told = Arc::clone(&progress);
-        // A thread with normal priority: the loop's thread has real-time priority if that is granted, and is not
-        // delayed.
+        // A thread with normal priority: the loop's thread has real-time priority if granted, and is not delayed.
         let thread = Builder::new().name("trade-off".to_owned()).spawn(move || {
             let source = Source::from_scene(&scene, rate_hz, SCENE_S);
             sweep(&[source], &plan, &stop, |done, total| {
@@ -73,7 +71,7 @@ impl Job {
     }
 }
 
-/// What is measured: the rig as it is, at the present delay.
+/// Plan of the measurement: the current rig, at the current delay.
 pub(super) fn plan(live: &Live) -> Plan {
     let mut rig = live.rig.clone();
     rig.delay_s = live.delay_s();
@@ -81,7 +79,6 @@ pub(super) fn plan(live: &Live) -> Plan {
 }
 
 impl Tradeoff {
-    /// Shows a message to the operator.
     fn tell(&mut self, message: impl Into<String>) {
         self.message = message.into();
     }
@@ -178,7 +175,7 @@ fn measure_ui(ui: &mut Ui, live: &Live, state: &mut Tradeoff) {
     });
 }
 
-/// The points of the Pareto front, cheapest first, each a button.
+/// The points of the Pareto front, fastest first, each a button.
 fn front_ui(ui: &mut Ui, figures: &SourceFigures, selected: &mut Option<usize>) {
     ui.label(small(text::FRONT.get())).on_hover_text(text::FRONT_HOVER.get());
     for index in front(figures) {
@@ -194,7 +191,7 @@ fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut Tradeoff, outbo
     let mode = point.choice.method.mode()?;
     let apply = Apply::of(live, mode, &point.choice);
     let restart = matches!(apply, Apply::Restart(_));
-    // After a restart the loop is idle, so it must not be a way out of a stop or a fault.
+    // After a restart the loop is idle, so a restart must not be a way out of a stop or a fault.
     let closed = calibrations::closed(live.state()).filter(|_| restart);
     let size = vec2(ui.available_width(), 30.0);
     let button = ui.add_enabled(closed.is_none(), Button::new(text::APPLY.get()).min_size(size));
@@ -215,7 +212,7 @@ fn apply_ui(ui: &mut Ui, live: &Live, point: &Point, state: &mut Tradeoff, outbo
     None
 }
 
-/// Indices of the Pareto front at the source's own rate, cheapest first.
+/// Indices of the Pareto front at the source's own rate, fastest first.
 fn front(figures: &SourceFigures) -> Vec<usize> {
     let points = &figures.points;
     let mut front: Vec<usize> =

@@ -1,4 +1,4 @@
-//! What **Apply** does with a measured point, so that the loop then does the work whose time was measured.
+//! Effect of **Apply** on a measured point, so that the loop does the work whose time was measured.
 
 use nima_core::{impedance::Mode, limits::GAIN};
 use nima_machine::{
@@ -9,12 +9,12 @@ use nima_study::tradeoff::Choice;
 
 use crate::console::live::Live;
 
-/// How the loop comes to a choice.
+/// How the loop changes to a choice.
 #[derive(Clone, Debug)]
 pub(super) enum Apply {
-    /// The running loop is told.
+    /// By commands to the running loop.
     AtOnce([Command; 3]),
-    /// The loop is started anew with this rig: degree and window cannot change while it runs.
+    /// By a restart with this rig: degree and window cannot change while the loop runs.
     Restart(Box<RigConfig>),
 }
 
@@ -23,7 +23,7 @@ impl Apply {
         if needs_restart(&live.rig.identification, mode, choice) {
             return Self::Restart(Box::new(rig_with(live, mode, choice)));
         }
-        // The cost that was measured is that of this mode alone.
+        // The cost was measured for this mode alone.
         Self::AtOnce([Command::Compare(false), Command::SetMode(mode), Command::SetDelay(choice.delay_ms * 1e-3)])
     }
 }
@@ -72,7 +72,7 @@ mod tests {
     use crate::extras::lab::screen::tradeoff::{name, plan};
 
     const SIDE: Side = Side::Right;
-    /// Passes of each for a cost that other work disturbs little.
+    /// Number of passes, for a cost that other load hardly disturbs.
     const PASSES: usize = 5;
 
     /// A rig whose settings are not the default ones and that compares all modes when the operator presses Apply.
@@ -89,13 +89,13 @@ mod tests {
         sweep(std::slice::from_ref(source), plan, &AtomicBool::new(false), |_, _| {}).unwrap().sources.remove(0)
     }
 
-    /// Every point that can be on the front. Which of them are is a matter of measured times.
+    /// Every point that can be on the front. Measured times decide which of them are.
     fn grid(figures: &SourceFigures) -> Vec<Point> {
         let curves = figures.curves.iter().filter(|curve| curve.knob == Knob::Grid);
         curves.flat_map(|curve| &curve.points).map(|&index| figures.points[index]).collect()
     }
 
-    /// The loop at the simulated peg transfer, engaged, 2 s after it was started and after `apply`.
+    /// The loop at the simulated peg transfer, engaged, 2 s after its start and after `apply`.
     fn loop_after(live: &Live, apply: &Apply) -> Loop {
         let (rig, commands) = match apply {
             Apply::AtOnce(commands) => (&live.rig, &commands[..]),
@@ -118,8 +118,8 @@ mod tests {
         control
     }
 
-    /// After Apply the identifier in the loop is the one whose time was measured: from the same samples it makes, tick for tick, the
-    /// same results of everything that it computes. What it learnt before is left out of the comparison.
+    /// After Apply, the loop's identifier is the one whose time was measured: from the same samples it computes the same
+    /// results in every tick. Earlier learning is excluded from the comparison.
     #[test]
     fn after_apply_the_loop_does_the_work_that_was_measured() {
         let live = live();
@@ -145,7 +145,7 @@ mod tests {
         assert!(points.len() > 20 && restarts > 5 && restarts < points.len(), "{restarts} of {}", points.len());
     }
 
-    /// Median time of a tick, us: the lowest of all passes, as the study takes the lowest of its own.
+    /// Median time of a tick, us: the lowest of all passes, as in the study.
     fn median_us(identifier: &Identifier, samples: &[Sample], from_s: f64) -> f64 {
         let pass = || {
             let mut identifier = identifier.clone();
@@ -164,9 +164,9 @@ mod tests {
         (0..PASSES).map(|_| pass()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Prints the times; it judges nothing.
+    /// Prints the times without judging them.
     #[test]
-    #[ignore = "prints the times of docs/tradeoff.md: `./dev figures` runs it"]
+    #[ignore = "prints the times of docs/results/tradeoff.md: `./dev figures` runs it"]
     fn figures_of_what_apply_costs() {
         let rig = RigConfig::load("simulated").unwrap();
         let live = Live::new(rig, Scene::load("peg_transfer").unwrap());

@@ -15,7 +15,7 @@ use crate::{
 };
 
 const HEIGHT: f32 = 230.0;
-/// A point is selected if the pointer is closer to it than this share of the plot.
+/// A point is selected if the pointer is closer to it than this fraction of the plot.
 const NEAR: f64 = 0.06;
 
 /// Draws the plot; returns the point that was clicked.

@@ -13,8 +13,8 @@ use super::{
     sources::{RATE_HZ, Sources, delays_s},
 };
 
-/// Scenes with contact, compared on where no recording is given (in `bimanual` the right hand does what it does in `peg_transfer`),
-/// each with this many seeds: hands that move differently.
+/// Scenes with contact for the comparison without a recording (in `bimanual` the right hand does the same as in
+/// `peg_transfer`), each with this many seeds, which give different hand motions.
 const SCENES: [&str; 2] = ["palpation", "peg_transfer"];
 const SEEDS: u64 = 4;
 /// Duration of a scene, s.

@@ -13,8 +13,9 @@ enum Named {
 
 #[derive(Debug, Args)]
 pub(super) struct Clocks {
-    /// When the loop's ticks wake: perfect, quiet or busy (as recorded on such a computer), late-PERCENT (this fraction is 0.5 to 4 ms
-    /// late), stall-MS (a pause about once a second), or all; may be given several times (default: quiet and perfect)
+    /// Wake-up times of the loop's ticks: perfect, quiet or busy (recorded on such a computer), late-PERCENT (this percentage
+    /// of ticks is 0.5 to 4 ms late), stall-MS (a pause about once per second), or all; may be given several times (default:
+    /// quiet and perfect)
     #[arg(long, value_name = "NAME", value_parser = named)]
     clock: Vec<Named>,
     /// Seed of the late ticks
@@ -33,7 +34,7 @@ fn named(text: &str) -> Result<Named, String> {
 }
 
 impl Clocks {
-    /// The clocks, each once, in the order in which they were named.
+    /// The clocks, each once, in the order of the arguments.
     pub(super) fn chosen(&self) -> Vec<VirtualClock> {
         let mut chosen: Vec<ClockProfile> = Vec::new();
         let named = self.clock.iter().flat_map(|named| match named {

@@ -8,7 +8,7 @@ use crate::command::run::positive_seconds;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct Arguments {
-    /// Scenes, by name or file; may be repeated (default: all that are built in)
+    /// Scenes, built-in name or TOML file; may be repeated (default: all built-in scenes)
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
     /// Length of the motion, s

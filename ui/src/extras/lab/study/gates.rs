@@ -19,7 +19,7 @@ pub(in crate::extras::lab) struct Gates {
 fn requests(text: &str) -> Result<u64, String> {
     match text.parse::<f64>() {
         Ok(count) if (1.0..=1e12).contains(&count) && count.fract() == 0.0 => Ok(count as u64),
-        _ => Err("give a whole number from 1 to 1e12".to_owned()),
+        _ => Err("enter a whole number from 1 to 1e12".to_owned()),
     }
 }
 

@@ -1,7 +1,6 @@
-//! `nima study`: experiments that report figures.
+//! `nima study`: experiments that report results.
 //!
-//! Each has a file with its arguments in `study/` and a line in the table below; all results are written by the same
-//! code.
+//! Each has a file with its arguments in `study/` and a line in the table below; the same code writes all results.
 
 mod baselines;
 mod clocks;
@@ -53,8 +52,8 @@ pub(super) struct Study<A: Args> {
 /// Where to write the results of a study.
 #[derive(Debug, Args)]
 pub(super) struct Results {
-    /// Write the results into this folder: JSON, tables (Markdown or CSV) and pictures (SVG), named after the study (created if
-    /// missing; replaces files, whose mode stays; follows links; refuses inputs, devices and pipes)
+    /// Write the results into this folder: JSON, tables (Markdown or CSV) and plots (SVG), named after the study (created if
+    /// missing; replaces existing files and keeps their permissions; follows links; rejects input files, devices and pipes)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print the results as one JSON object
@@ -78,21 +77,24 @@ macro_rules! studies {
 }
 
 studies! {
-    /// Compare the methods of others with every mode, on recordings and scenes: error at the horizon over delayed reflection
+    /// Compare baseline methods with every mode, on recordings and scenes: prediction error relative to delayed reflection
     Baselines(baselines::Arguments),
-    /// Measure what each effect of a scene costs in a tick, and what leaving it out changes in the force
+    /// Measure the cost of each effect of a scene per tick, and the change of the force without it
     Effects(effects::Arguments),
-    /// Inject every kind of fault in every state; report what is detected, how soon, and the force error at the hand
+    /// Inject every kind of fault in every state; report detection, detection time, and the force error at the hand
     Faults(faults::Faults),
     /// Send extreme force requests through the gates and count violations of their limits
     Gates(gates::Gates),
-    /// Move hands that hold the handle, and let go, in front of the last gate: how often, how hard and how late it acts
+    /// Move simulated hands that hold and release the handle, in front of the last gate: how often, how hard and how late it
+    /// acts
     Hands(hands::Hands),
-    /// Run two machines over a bad line, in every mode: force error, energy, stops, over delay, jitter, loss, outages and clock faults
+    /// Run two machines over a bad network, in every mode: force error, energy and stops over delay, jitter, loss, outages
+    /// and clock faults
     Network(network::Network),
-    /// Let go of a handle pressed with up to 5 N: every mode, method of others and delay, without and with the governor
+    /// Release a handle pressed with up to 5 N: every mode, baseline and delay, with and without the governor
     Release(release::Release),
-    /// Measure whether the loop gives the hand energy, and whether a loose grip oscillates, in every mode and at every delay
+    /// Measure whether the loop gives energy to the hand, and whether a loose grip oscillates, in every mode and at every
+    /// delay
     Passivity(passivity::Passivity),
     /// Compare every solver with an arbitrary-precision reference in extreme cases
     Stability(stability::Stability),
@@ -102,7 +104,8 @@ studies! {
     Tradeoff(tradeoff::Arguments),
     /// Compare the conditions of a user study, from a table of trials: tests, intervals, effect sizes, a mixed model
     Trials(trials::Arguments),
-    /// Measure the loop's timing beside its console, busy cores, a blocked window and heavy disk writing
+    /// Measure the loop's timing while its console renders, all cores are busy, the window is blocked, or the disk is written
+    /// heavily
     Timing(timing::Arguments),
     /// Repeat the paper's three validations on the simulated rig and compare the results
     Validation(validation::Validation),
@@ -122,7 +125,7 @@ impl Results {
             let json = (".json".to_owned(), serde_json::to_string_pretty(&findings)?);
             let files = [json].into_iter().chain(findings.files());
             let files: Vec<_> = files.map(|(end, text)| (name::<E>(&end), text)).collect();
-            // Some names depend on the results, so only now can they be compared with the inputs.
+            // Some names depend on the results, so they can be compared with the inputs only now.
             files.iter().try_for_each(|(name, _)| output::check(&out.join(name), &inputs))?;
             files.iter().try_for_each(|(name, text)| output::write(out, name, text))?;
         }
@@ -141,7 +144,7 @@ fn progress(done: usize, of: usize, what: &str) {
     if !stderr.is_terminal() {
         return;
     }
-    // Errors are ignored: a closed terminal is no reason to stop a study.
+    // Errors are ignored: a closed terminal does not stop a study.
     if done < of {
         write!(stderr, "\r\x1b[K{}/{of} {what}", done + 1).ok();
     } else {

@@ -14,11 +14,11 @@ pub(in crate::extras::lab) struct Network {
     /// Every combination of delay, jitter, loss, bursts, outages, faults of the clock and modes (more than 100 000 cells: days)
     #[arg(long)]
     full: bool,
-    /// Only in this mode, beside delayed reflection; may be given several times, and the first is judged (default: all modes, and best
-    /// is judged)
+    /// Only this mode, in addition to delayed reflection; may be given several times, and the first one is judged (default:
+    /// all modes, and best is judged)
     #[arg(long, value_name = "M")]
     mode: Vec<Mode>,
-    /// Make the force from the motion of the handle, as the rig key `own_motion = "handle"` does
+    /// Compute the force from the motion of the handle, as the rig key `own_motion = "handle"` does
     #[arg(long)]
     own_motion_handle: bool,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! What a study of the identification runs over: recordings and scenes.
+//! Inputs of an identification study: recordings and scenes.
 
 use std::path::PathBuf;
 
@@ -17,10 +17,10 @@ pub(super) const RATE_HZ: f64 = 1000.0;
 
 #[derive(Debug, Args)]
 pub(super) struct Sources {
-    /// CSV file with motion and force, or session, as for `nima identify`; one or several
+    /// CSV file with motion and force, or session, as for `nima identify`; may be repeated
     #[arg(long, value_name = "FILE", num_args = 1..)]
     recording: Vec<PathBuf>,
-    /// Which arm of the sessions, right or left (needed where one has both)
+    /// Arm of the sessions, right or left (required if a session has both)
     #[arg(long, value_name = "ARM", value_parser = side)]
     arm: Option<Side>,
     /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
@@ -45,10 +45,10 @@ impl Sources {
 
     pub(super) fn recordings(&self) -> anyhow::Result<Vec<Source>> {
         if !self.map.is_empty() && self.recording.is_empty() {
-            bail!("--map names columns of a recording: give one with --recording");
+            bail!("--map requires a recording: add --recording");
         }
         if self.arm.is_some() && self.recording.is_empty() {
-            bail!("--arm chooses an arm of a session: give one with --recording");
+            bail!("--arm requires a session: add --recording");
         }
         let mapping = Mapping::parse(&self.map)?;
         let forces = ["fx_n", "fy_n", "fz_n"];
@@ -57,7 +57,7 @@ impl Sources {
         self.recording.iter().map(read).collect()
     }
 
-    /// The scenes given, each for this long (s), on each of these clocks.
+    /// The given scenes, each for this duration (s), on each of these clocks.
     pub(super) fn scenes(&self, clocks: &[VirtualClock], seconds: f64) -> anyhow::Result<Vec<Source>> {
         let load = |name: &String| Scene::load(name).with_context(|| format!("--scene {name}"));
         let scenes = self.scene.iter().map(load).collect::<anyhow::Result<Vec<_>>>()?;
@@ -66,11 +66,11 @@ impl Sources {
     }
 }
 
-/// Delays in seconds from `--delay-ms`, all within what the link can do.
+/// Delays in seconds from `--delay-ms`, all within the range of the link.
 pub(super) fn delays_s(asked_ms: &[f64]) -> anyhow::Result<Vec<f64>> {
     let limits_ms = DELAY_S.per(1e-3, "ms");
     if let Some(delay_ms) = asked_ms.iter().find(|delay_ms| !limits_ms.contains(**delay_ms)) {
-        bail!("--delay-ms {delay_ms}: give {limits_ms}");
+        bail!("--delay-ms {delay_ms}: enter {limits_ms}");
     }
     Ok(asked_ms.iter().map(|ms| ms * 1e-3).collect())
 }

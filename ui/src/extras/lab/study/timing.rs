@@ -1,7 +1,6 @@
-//! `nima study timing`: the loop on the real clock while other activities may delay it, with each scheduling class.
+//! `nima study timing`: the loop on the real clock while other load may delay it, with each scheduling class.
 //!
-//! Each case runs in a process of its own, as in normal use; the loads run in this process. Cases with a window need a
-//! display.
+//! Each case runs in a separate process, as in normal use; the load runs in this process. Cases with a window need a display.
 
 use std::{
     convert::Infallible,
@@ -35,7 +34,7 @@ pub(in crate::extras::lab) struct Arguments {
     scene: String,
 }
 
-/// Activity in parallel with the loop.
+/// Load that runs parallel to the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Beside {
@@ -64,7 +63,7 @@ impl Beside {
     }
 }
 
-/// The fields of [`nima_core::statistics::Quantiles`] that are shown.
+/// Displayed fields of [`nima_core::statistics::Quantiles`].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Quantiles {
     p50: f64,
@@ -73,7 +72,7 @@ struct Quantiles {
     max: f64,
 }
 
-/// The fields of [`nima_machine::runtime::Summary`] that are shown.
+/// Displayed fields of [`nima_machine::runtime::Summary`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Figures {
     ticks: u64,
@@ -93,15 +92,13 @@ struct Scheduling {
 #[derive(Debug, Serialize)]
 pub(super) struct Case {
     beside: Beside,
-    /// Scheduling class that was requested.
     asked: SchedulingClass,
     #[serde(flatten)]
     figures: Option<Figures>,
-    /// Why there are no figures; `None` if there are some.
+    /// Reason for missing results; `None` if there are some.
     skipped: Option<String>,
 }
 
-/// All cases.
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
 pub(in crate::extras::lab) struct Cases(Vec<Case>);
@@ -165,14 +162,14 @@ fn measure(arguments: &Arguments, beside: Beside, asked: SchedulingClass) -> any
     }
     command.args(["--scene", &arguments.scene]);
     command.args(["--scheduling", asked.name()]);
-    // Its standard input closes when this process ends for whatever reason, so no loop keeps running.
+    // Its standard input closes when this process ends for any reason, so no loop keeps running.
     command.arg("--until-input-ends");
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     let held = child.stdin.take();
     let done = child.wait_with_output()?;
     drop((held, load));
     let text = if beside.has_window() { std::fs::read(&summary).unwrap_or_default() } else { done.stdout };
-    // A loop that was delayed ends in a fault; its figures are still wanted.
+    // A delayed loop ends in a fault; its results are still used.
     serde_json::from_slice(&text).map_err(|error| {
         let told = String::from_utf8_lossy(&done.stderr).lines().next_back().map(str::to_owned);
         told.filter(|_| !done.status.success()).map_or_else(|| error.into(), anyhow::Error::msg)
@@ -234,11 +231,11 @@ impl Drop for Load {
 
 fn table(cases: &[Case]) -> String {
     let mut out = String::from(
-        "| beside the loop | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+        "| load | class | ticks | missed | wake-up us p50 | p99 | p99.9 | max | work us p50 | p99 \
+         |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for Case { beside, asked, figures, skipped } in cases {
-        // Writing into a String cannot fail.
+        // Writing to a String cannot fail.
         write!(out, "| {} | {} |", beside.words(), asked.name()).ok();
         let Some(Figures { ticks, missed, wake_us: wake, work_us: work, scheduling }) = figures else {
             let why = skipped.as_deref().unwrap_or("not measured");

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::leaving::Leave;
 
-/// Scenes that are measured by default.
+/// Default scenes.
 const SCENES: [&str; 2] = ["peg_transfer", "free_motion"];
 /// Duration of a scene, s; the second constant is for `--quick`.
 const SCENE_S: f64 = 10.0;

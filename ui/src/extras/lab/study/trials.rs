@@ -9,19 +9,19 @@ use super::Asked;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::lab) struct Arguments {
-    /// The table (CSV): a row per trial with `participant`, `condition`, if known `trial`, and a column per measure
+    /// Table (CSV): one row per trial with `participant`, `condition`, optionally `trial`, and one column per measure
     #[arg(value_name = "TRIALS.csv")]
     table: PathBuf,
-    /// Measures: names of columns; may be repeated (default: every column of numbers)
+    /// Measures: names of columns; may be repeated (default: every numeric column)
     #[arg(long, value_name = "COLUMN")]
     measure: Vec<String>,
-    /// The condition with which the others are compared (default: the first in alphabetical order)
+    /// Condition with which the others are compared (default: the first in alphabetical order)
     #[arg(long, value_name = "CONDITION")]
     reference: Option<String>,
-    /// Confidence of the intervals, as a share
+    /// Confidence level of the intervals, as a fraction
     #[arg(long, value_name = "SHARE", value_parser = share, default_value = "0.95")]
     confidence: f64,
-    /// Tell how many participants give this power, as a share, if the differences are as measured here
+    /// Print the number of participants that gives this power, as a fraction, if the differences are as measured here
     #[arg(long, value_name = "SHARE", value_parser = share)]
     power: Option<f64>,
 }
@@ -29,7 +29,7 @@ pub(in crate::extras::lab) struct Arguments {
 fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if (0.5..1.0).contains(&share) => Ok(share),
-        _ => Err("give a share from 0.5 to below 1, such as 0.95".to_owned()),
+        _ => Err("enter a fraction from 0.5 to below 1, such as 0.95".to_owned()),
     }
 }
 

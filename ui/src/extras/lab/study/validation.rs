@@ -24,16 +24,17 @@ pub(in crate::extras::lab) struct Validation {
     delay_ms: f64,
     #[command(flatten)]
     clocks: Clocks,
-    /// Only the rendering part, on the perfect clock, under the paper's conditions and under others: in its window, at the horizon, and when the hand lets go
+    /// Only the rendering part, on the perfect clock, under the paper's conditions and under others: in its window, at the
+    /// prediction horizon, and when the hand releases the handle
     #[arg(long, conflicts_with_all = ["clock", "clock_seed"])]
     paper: bool,
     /// Duration of the task under each condition, s
     #[arg(long, value_name = "S", default_value_t = paper::SECONDS, value_parser = seconds, requires = "paper")]
     seconds: f64,
-    /// CSV file with motion and force, or session, as for `nima identify`, which is judged too; may be given several times
+    /// CSV file with motion and force, or session, as for `nima identify`, to evaluate too; may be given several times
     #[arg(long, value_name = "FILE", requires = "paper")]
     recording: Vec<PathBuf>,
-    /// Which arm of the sessions, right or left (needed where one has both)
+    /// Arm of the sessions, right or left (required if a session has both)
     #[arg(long, value_name = "ARM", value_parser = side, requires = "recording")]
     arm: Option<Side>,
     /// Other column names in the recordings, with an optional factor: `x=px_mm*0.001`
@@ -44,21 +45,21 @@ pub(in crate::extras::lab) struct Validation {
 fn rows(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(rows @ 2000..=MOST_ROWS) => Ok(rows),
-        _ => Err(format!("give a number of rows from 2000 to {MOST_ROWS}")),
+        _ => Err(format!("enter a number of rows from 2000 to {MOST_ROWS}")),
     }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (5.0..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("give a duration from 5 to 3600 s".to_owned()),
+        _ => Err("enter a duration from 5 to 3600 s".to_owned()),
     }
 }
 
 fn delay_ms(text: &str) -> Result<f64, String> {
     let limits = DELAY_S.per(1e-3, "ms");
     let delay_ms = text.parse::<f64>().ok().filter(|delay_ms| limits.contains(*delay_ms));
-    delay_ms.ok_or_else(|| format!("give a delay from {limits}"))
+    delay_ms.ok_or_else(|| format!("enter a delay from {limits}"))
 }
 
 impl Asked for Validation {

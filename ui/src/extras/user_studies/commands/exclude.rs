@@ -8,16 +8,16 @@ use nima_user_study::Study;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// Who
+    /// Participant
     #[arg(long, value_name = "P01")]
     participant: String,
-    /// This trial only
+    /// Only this trial
     #[arg(long, value_name = "N")]
     trial: Option<u32>,
-    /// Why; it stands in the report
+    /// Reason, which appears in the report
     #[arg(long, value_name = "TEXT")]
     reason: String,
 }

@@ -1,4 +1,4 @@
-//! `nima user-study`: a study from its file to the last questionnaire. A file for each subcommand.
+//! `nima user-study`: a study from its file to the last questionnaire. One file per subcommand.
 
 mod exclude;
 mod new;
@@ -14,21 +14,21 @@ use clap::Subcommand;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum UserStudyCommand {
-    /// Make the folder of a study: pseudonyms, orders, sealed conditions
+    /// Create the folder of a study: pseudonyms, orders, sealed conditions
     New(new::Arguments),
-    /// Tell who has done what, and what comes next
+    /// Show the progress of all participants, and the next steps
     Status(status::Arguments),
-    /// Do the next step of a participant
+    /// Run the next step of a participant
     Next(next::Arguments),
-    /// Keep a note in the journal
+    /// Write a note to the journal
     Note(note::Arguments),
-    /// Leave a participant, or one trial, out of the analysis
+    /// Exclude a participant, or one trial, from the analysis
     Exclude(exclude::Arguments),
-    /// Open the conditions; who, when and why is kept
+    /// Reveal the conditions; name, time and reason are stored
     Unblind(unblind::Arguments),
     /// Write the table of trials for `nima study trials`
     Table(table::Arguments),
-    /// Let simulated people do the whole study
+    /// Let simulated participants do the whole study
     Simulate(simulate::Arguments),
 }
 

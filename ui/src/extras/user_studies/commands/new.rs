@@ -15,7 +15,7 @@ pub(in crate::extras::user_studies) struct Arguments {
     /// Study: `paper`, `short`, or a TOML file
     #[arg(value_name = "STUDY")]
     file: String,
-    /// The folder, which must be new or empty
+    /// Folder for the study; must be new or empty
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Print the result as one JSON object
@@ -41,13 +41,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }));
     }
     let balance = if balanced {
-        format!("each order is there {} times", participants / rows)
+        format!("each order occurs {} times", participants / rows)
     } else {
-        format!("the orders are not balanced: take a multiple of {rows}")
+        format!("the orders are not balanced: use a multiple of {rows}")
     };
     output::line(&format!(
-        "made {}: {participants} participants, {} conditions ({balance}), {} trials of each\n\
-         commitment (BLAKE2b-256): {}\nkeep it outside of the folder: it proves later that nobody changed the assignment",
+        "created {}: {participants} participants, {} conditions ({balance}), {} trials of each\ncommitment \
+         (BLAKE2b-256): {}\nkeep it outside the folder: it proves later that the assignment was not changed",
         out.display(),
         plan.labels.len(),
         plan.trials_of_each(),

@@ -16,19 +16,19 @@ use crate::{
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// Who
+    /// Participant
     #[arg(long, value_name = "P01")]
     participant: String,
-    /// Run a trial in the simulated rig, by its simulated hand, on a virtual clock; a break takes no time
+    /// Run a trial on the simulated rig with its simulated hand, on a virtual clock; a break takes no time
     #[arg(long = "virtual")]
     virtual_clock: bool,
-    /// Answers to the questionnaire that comes next, as TOML: `realism = 5`
+    /// Answers to the next questionnaire, as TOML: `realism = 5`
     #[arg(long, value_name = "TOML", conflicts_with = "answers_file")]
     answers: Option<String>,
-    /// The same from a file; it may hold the answers to several questionnaires
+    /// File with answers; may contain the answers to several questionnaires
     #[arg(long, value_name = "FILE")]
     answers_file: Option<PathBuf>,
     /// Print the result as one JSON object
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut study = Study::open(study, &utc_now())?;
     let step = study.next(participant)?;
     let words = match step {
-        Step::Done { .. } => bail!("{participant}: there is {step}"),
+        Step::Done { .. } => bail!("{participant}: no next step ({step})"),
         Step::Questionnaire { questionnaire, .. } => {
             let given = given(questionnaire, answers.as_deref(), answers_file.as_deref())?;
             study.answer(participant, given, false, &utc_now())?;
@@ -80,5 +80,5 @@ fn given(asked: Questionnaire, text: Option<&str>, file: Option<&Path>) -> anyho
         }
         (None, None) => String::new(),
     };
-    Answers::from_toml(&text, asked).map_err(|why| anyhow::anyhow!("{why}; give it with --answers or --answers-file"))
+    Answers::from_toml(&text, asked).map_err(|why| anyhow::anyhow!("{why}; add it with --answers or --answers-file"))
 }

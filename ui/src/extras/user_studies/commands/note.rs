@@ -8,13 +8,13 @@ use nima_user_study::Study;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// The note; it must not tell who the participant is
+    /// Text of the note; it must not identify the participant
     #[arg(long, value_name = "TEXT")]
     text: String,
-    /// About whom
+    /// Participant that the note is about
     #[arg(long, value_name = "P01")]
     participant: Option<String>,
 }

@@ -10,13 +10,13 @@ use crate::extras::user_studies::report;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// Where to write report.html, the tables (CSV) and the scripts for R (default: `report` in the folder of the study)
+    /// Folder for report.html, the tables (CSV) and the scripts for R (default: `report` in the folder of the study)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Every measure, not only those that the study file named
+    /// Analyse every measure, not only those in the study file
     #[arg(long)]
     all: bool,
 }

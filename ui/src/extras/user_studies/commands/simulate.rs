@@ -15,13 +15,13 @@ use crate::{
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study, in which no real person has taken part
+    /// Folder of the study, in which no real person has taken part
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// Seed of the simulated people
+    /// Seed of the simulated participants
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Stop after so many steps; a later call goes on
+    /// Stop after this many steps; a later call continues
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
 }
@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         one.trials.iter().any(|made| !made.simulated) || one.answers.iter().any(|given| !given.2)
     };
     if study.state().participants().any(is_real) {
-        bail!("real people have taken part in this study: make another folder for a simulation");
+        bail!("real people have taken part in this study: create another folder for a simulation");
     }
     let leave = Leave::on_signals()?;
     let names: Vec<String> = study.plan().participants.iter().map(|one| one.name.clone()).collect();
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 }
             }
             if leave.is_asked() {
-                bail!("ended as asked; the same command goes on");
+                bail!("ended on request; the same command continues");
             }
             left -= 1;
         }

@@ -10,15 +10,14 @@ use crate::command::output;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// Print it as one JSON object
+    /// Print the status as one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// One participant.
 #[derive(Serialize)]
 struct Standing<'a> {
     participant: &'a str,
@@ -93,7 +92,7 @@ impl<'a> Status<'a> {
         };
         let mut text = format!("{}: {sealed}\ncommitment {}\n", self.name, self.commitment);
         if self.simulated {
-            text.push_str("SIMULATED: trials or answers of simulated people are in it\n");
+            text.push_str("SIMULATED: contains trials or answers of simulated people\n");
         }
         for one in &self.participants {
             let order: Vec<String> = one.order.iter().map(ToString::to_string).collect();
@@ -116,7 +115,7 @@ impl<'a> Status<'a> {
         }
         for nima_user_study::Exclusion { participant, trial, why } in &self.excluded {
             let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
-            writeln!(text, "left out of the analysis: {participant}, {what}: {why}").ok();
+            writeln!(text, "excluded from the analysis: {participant}, {what}: {why}").ok();
         }
         for (at, about, words) in self.notes {
             writeln!(text, "note {at}{}: {words}", about.as_ref().map_or_else(String::new, |name| format!(" {name}")))

@@ -11,13 +11,13 @@ use crate::command::output;
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// The table (CSV)
+    /// Table to write (CSV)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Scores of the questionnaires in place of the trials
+    /// Write the scores of the questionnaires instead of the trials
     #[arg(long)]
     questionnaires: bool,
 }
@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     output::line(&format!("{rows} rows in {}", out.display()))?;
     for nima_user_study::Exclusion { participant, trial, why } in excluded {
         let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
-        output::line(&format!("left out: {participant}, {what}: {why}"))?;
+        output::line(&format!("excluded: {participant}, {what}: {why}"))?;
     }
     missing
         .iter()

@@ -11,13 +11,13 @@ use crate::{command::output, telling::tell};
 
 #[derive(Debug, Args)]
 pub(in crate::extras::user_studies) struct Arguments {
-    /// The folder of the study
+    /// Folder of the study
     #[arg(value_name = "DIR")]
     study: PathBuf,
-    /// Who opens it; kept in the journal
+    /// Name of the person who reveals the conditions; stored in the journal
     #[arg(long, value_name = "NAME")]
     name: String,
-    /// Why; kept in the journal
+    /// Reason; stored in the journal
     #[arg(long, value_name = "TEXT")]
     reason: String,
     /// Print the conditions as one JSON object
@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut study = Study::open(study, &utc_now())?;
     study.unblind(name, reason, &utc_now())?;
     if study.state().unblinding.as_ref().is_some_and(|unblinding| !unblinding.complete) {
-        tell("warning: not everybody has finished; trials from now on are marked as unblinded");
+        tell("warning: not all participants have finished; trials from now on are marked as unblinded");
     }
     let labels: Vec<_> = study.opened().into_iter().flat_map(nima_user_study::Opened::labels).collect();
     if *json {

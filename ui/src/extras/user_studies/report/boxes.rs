@@ -1,4 +1,4 @@
-//! Box plots of a measure, a box for each condition.
+//! Box plots of a measure, one box per condition.
 
 use std::collections::BTreeMap;
 
@@ -16,10 +16,10 @@ const RIGHT: f64 = 16.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 34.0;
 const HALF_BOX: f64 = 28.0;
-/// Lines reach the farthest value within so many heights of the box (Tukey 1977, Exploratory Data Analysis).
+/// Maximum length of the whiskers, in box heights (Tukey 1977, Exploratory Data Analysis).
 const REACH: f64 = 1.5;
 
-/// The means of the participants under each condition, in this order; empty if there are none.
+/// The means of the participants under each condition, in this order; empty without values.
 pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) -> Markup {
     let groups: Vec<(&String, Vec<f64>)> =
         order.iter().map(|name| (name, means(table, measure, name))).filter(|(_, values)| !values.is_empty()).collect();
@@ -66,7 +66,7 @@ fn group(x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) -> Mar
             fill=(colour) fill-opacity="0.2" stroke=(colour) {}
         path d=(format_args!("M{left:.1} {:.1}h{width}", down(median))) stroke=(colour) stroke-width="2.5" {}
         @for (place, value) in values.iter().enumerate() {
-            // Beside the box, in columns, so that equal values are seen.
+            // Next to the box, in columns, so that equal values remain visible.
             @let aside = HALF_BOX + 8.0 + 5.0 * (place % 4) as f64;
             circle cx=(format_args!("{:.1}", x + aside)) cy=(format_args!("{:.1}", down(*value))) r="2.5" fill=(colour) {}
         }

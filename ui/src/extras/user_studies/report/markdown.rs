@@ -1,4 +1,4 @@
-//! Tables and sentences of a report in Markdown as HTML: no more of Markdown than those reports have.
+//! Converts tables and sentences of a report from Markdown to HTML; supports only the Markdown that those reports use.
 
 use maud::{Markup, html};
 

@@ -1,4 +1,4 @@
-//! The report of a user study: one page that needs nothing beside it, the tables it was made from, and scripts for R.
+//! The report of a user study: one self-contained page, the tables behind it, and scripts for R.
 //!
 //! The statistics are those of `nima study trials`, on the same tables.
 
@@ -29,10 +29,10 @@ use crate::{
 pub(super) const PAGE: &str = "report.html";
 const TRIALS: &str = "trials.csv";
 const QUESTIONNAIRES: &str = "questionnaires.csv";
-/// Scores of questionnaires that are compared; the single scales of the NASA-TLX are in the table alone.
+/// Compared questionnaire scores; the single scales of the NASA-TLX are only in the table.
 const SCORES: [&str; 4] = ["nasa_tlx_weighted", "nasa_tlx_raw", "sus", "realism"];
 
-/// Writes the report of a study into a folder, which is made if it is missing; gives the page.
+/// Writes the report of a study into a folder, which is created if missing; returns the path of the page.
 pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<PathBuf> {
     let journal = study.folder().join(nima_user_study::JOURNAL);
     output::folder(out, &[PAGE, TRIALS, QUESTIONNAIRES], &[&journal])?;
@@ -45,7 +45,7 @@ pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<Path
     let wanted = if all { columns(&trials.csv, |name| !named.iter().any(|known| known == name)) } else { Vec::new() };
     let wanted: Vec<String> = named.into_iter().chain(wanted).collect();
     let measures = Analysed::of(study, out, TRIALS, &trials.csv, &wanted, "trials")?;
-    // Only those that were asked.
+    // Only questionnaires of this study.
     let scores = columns(&questionnaires.csv, |name| SCORES.contains(&name));
     let scores = Analysed::of(study, out, QUESTIONNAIRES, &questionnaires.csv, &scores, "questionnaires")?;
     let page = page(study, &trials, measures.as_ref(), scores.as_ref());
@@ -53,7 +53,7 @@ pub(super) fn write(study: &Study, out: &Path, all: bool) -> anyhow::Result<Path
     Ok(out.join(PAGE))
 }
 
-/// Names of the columns of numbers that a filter lets through.
+/// Names of numeric columns that pass a filter.
 fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
     let names = csv.lines().next().unwrap_or_default().split(',');
     names
@@ -66,7 +66,7 @@ fn columns(csv: &str, filter: impl Fn(&str) -> bool) -> Vec<String> {
 struct Analysed {
     table: Table,
     report: Report,
-    /// Measures that no trial has.
+    /// Measures without a value in any trial.
     absent: Vec<String>,
 }
 
@@ -88,7 +88,7 @@ impl Analysed {
         }
         let path = out.join(file);
         let table = Table::read(&path, &measures)?;
-        // Before the unblinding the reference would tell its condition.
+        // Before unblinding, the reference would reveal its condition.
         let reference = study.opened().and_then(|opened| opened.reference().map(str::to_owned));
         let reference = reference.filter(|name| table.conditions().contains(name));
         let trials = Trials { path, measures, reference, confidence: 0.95, power: None };
@@ -111,7 +111,7 @@ fn page(
     let body = html! {
         p.note { "NIMA Console, research use only." }
         @if study.state().is_simulated() {
-            p.error { "Simulated: trials or answers of simulated people are in this study. It says nothing about people." }
+            p.error { "Simulated: this study contains trials or answers of simulated people. It is not evidence about real people." }
         }
         (conditions(study))
         (people::participants(study))
@@ -126,7 +126,7 @@ fn page(
     html::page(&plan.name, &body)
 }
 
-/// Whether the study is blind, and what its conditions are.
+/// Blindness of the study, and its conditions.
 fn conditions(study: &Study) -> Markup {
     let plan = study.plan();
     let row = |(label, name): (Label, &str)| {
@@ -159,12 +159,12 @@ fn blinding(study: &Study) -> Markup {
         return html! {
             p.warning {
                 "Blind: the conditions are shown by their labels. They are compared with the first label. \
-                 Measures that would tell the condition are left out until the unblinding."
+                 Measures that would reveal the condition are left out until unblinding."
             }
         };
     };
     let after = state.results() - by.trials_before.min(state.results());
-    let when = if by.complete { "after everybody had finished" } else { "before everybody had finished" };
+    let when = if by.complete { "after all participants had finished" } else { "before all participants had finished" };
     let class = if by.complete && after == 0 { "note" } else { "warning" };
     html! {
         p class=(class) {
@@ -173,7 +173,6 @@ fn blinding(study: &Study) -> Markup {
     }
 }
 
-/// What a measure is.
 fn definition(key: &str) -> Option<&'static Definition> {
     let is = |definition: &&Definition| {
         let of = |side: Side| format!("{}_{}", definition.id, side.word()) == key;
@@ -182,10 +181,10 @@ fn definition(key: &str) -> Option<&'static Definition> {
     MEASURES.iter().find(is)
 }
 
-/// The tables and the picture of each measure that a filter lets through.
+/// The tables and the plot of each measure that passes a filter.
 fn compared(title: &str, study: &Study, analysed: Option<&Analysed>, filter: impl Fn(&str) -> bool) -> Markup {
     let Some(Analysed { table, report, absent }) = analysed else {
-        return section(title, &html! { p { "There is nothing to compare yet." } });
+        return section(title, &html! { p { "Nothing to compare yet." } });
     };
     let order: Vec<String> = match study.opened() {
         Some(opened) => opened.labels().map(|(_, name)| name.to_owned()).collect(),

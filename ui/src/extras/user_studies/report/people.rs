@@ -1,4 +1,4 @@
-//! The participants in the report: what they did, what is left out, what they said, how they learnt.
+//! The participants in the report: progress, exclusions, remarks, learning.
 
 use maud::{Markup, PreEscaped, html};
 use nima_charts::{Axis, Chart, Series, Style, svg};
@@ -7,10 +7,9 @@ use nima_user_study::{Answers, Exclusion, Learning, Study, Table};
 
 use crate::report::html::{digits, section, table, table_or};
 
-/// Most participants whose times are drawn: more lines cannot be told apart.
+/// Maximum number of participants whose times are drawn: more lines would be indistinguishable.
 const DRAWN: usize = 7;
 
-/// Who did what.
 pub(super) fn participants(study: &Study) -> Markup {
     let plan = study.plan();
     let state = study.state();
@@ -35,7 +34,7 @@ pub(super) fn participants(study: &Study) -> Markup {
     section("Participants", &table(&heads, &rows))
 }
 
-/// What the analysis leaves out, and why.
+/// Exclusions from the analysis, with reasons.
 pub(super) fn left_out(trials: &Table) -> Markup {
     let excluded = trials.excluded.iter().map(|Exclusion { participant, trial, why }| {
         let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
@@ -45,10 +44,10 @@ pub(super) fn left_out(trials: &Table) -> Markup {
         vec![participant.clone(), format!("trial {trial}"), "interrupted: no result".to_owned()]
     });
     let rows: Vec<Vec<String>> = excluded.chain(missing).collect();
-    section("Left out of the analysis", &table_or(&["participant", "what", "why"], &rows, "Nothing."))
+    section("Excluded from the analysis", &table_or(&["participant", "what", "why"], &rows, "Nothing."))
 }
 
-/// Scores at the end, free texts, and notes of the people who ran the study.
+/// Scores at the end, free texts, and notes of the experimenters.
 pub(super) fn remarks(study: &Study) -> Markup {
     let mut scores = Vec::new();
     let mut rows = Vec::new();
@@ -76,7 +75,7 @@ pub(super) fn remarks(study: &Study) -> Markup {
 /// Proficiency and learning curves.
 pub(super) fn learning(study: &Study) -> Markup {
     let all = study.learning();
-    // A task without an end, such as touching for a time, has no completion times.
+    // A task without an end, such as touching for a given time, has no completion times.
     if all.iter().all(|of| of.practice == 0 && of.times_s.iter().all(Option::is_none)) {
         return html! {};
     }
@@ -113,7 +112,7 @@ fn curve_in_words(curve: &LearningCurve) -> String {
     };
     let plateau = match (curve.trials_to_plateau, curve.plateau_seen) {
         (Some(trial), true) => format!("reached in trial {trial}"),
-        (Some(trial), false) => format!("not seen; expected in trial {trial}"),
+        (Some(trial), false) => format!("not reached; expected in trial {trial}"),
         (None, _) => "out of reach".to_owned(),
     };
     format!("{shape}, plateau {} s, {plateau}", digits(curve.asymptote_s))

@@ -1,4 +1,4 @@
-//! The study beside its participants: what everybody may know, the report, the unblinding.
+//! The study next to its participants: public facts, the report, unblinding.
 
 use std::path::PathBuf;
 
@@ -20,10 +20,9 @@ use crate::{
     extras::user_studies::{report, text},
 };
 
-/// The folder of the report in that of the study.
+/// Folder of the report within that of the study.
 const REPORT: &str = "report";
 
-/// State of the column.
 #[derive(Debug, Default)]
 pub(super) struct Aside {
     name: String,
@@ -35,14 +34,13 @@ pub(super) struct Aside {
 }
 
 impl Aside {
-    /// Draws the column.
     pub(super) fn ui(&mut self, ui: &mut Ui, study: &mut Study) {
         about_ui(ui, study);
         self.report_ui(ui, study);
         self.unblinding_ui(ui, study);
     }
 
-    /// The report is written from the folder by a thread of its own: the statistics take some seconds.
+    /// A separate thread writes the report from the folder: the statistics take some seconds.
     fn report_ui(&mut self, ui: &mut Ui, study: &Study) {
         card(ui, text::studies::REPORT.get(), text::studies::REPORT_HOVER.get(), |ui| {
             let running = self.report.is_running();
@@ -70,7 +68,7 @@ impl Aside {
         });
     }
 
-    /// The page in the user's program for it.
+    /// Opens the page in the user's program for it.
     fn open_ui(&mut self, ui: &mut Ui, page: PathBuf) {
         let running = self.opened.is_running();
         let button = Button::new(text::studies::REPORT_OPEN.get()).min_size(vec2(ui.available_width(), 28.0));
@@ -117,7 +115,7 @@ impl Aside {
     }
 }
 
-/// The report that was written last.
+/// The last written report.
 fn written_before(study: &Study) -> Option<PathBuf> {
     let page = study.folder().join(REPORT).join(report::PAGE);
     page.is_file().then_some(page)

@@ -1,4 +1,4 @@
-//! How a participant learns: the times of the completed trials in order. Marked as practice or not, never by condition.
+//! Learning of a participant: the times of the completed trials in order. Marked as practice or not, never by condition.
 
 use egui::{Label, Ui};
 use egui_plot::{AxisHints, Line, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
@@ -14,7 +14,6 @@ use crate::{
 
 const HEIGHT: f32 = 190.0;
 
-/// Draws the plot.
 pub(super) fn curve_ui(ui: &mut Ui, learning: Option<&Learning>) {
     let Some(learning) = learning.filter(|learning| learning.times_s.iter().any(Option::is_some)) else {
         ui.label(weak(text::studies::NO_TIMES.get()));

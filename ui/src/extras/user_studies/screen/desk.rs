@@ -1,4 +1,4 @@
-//! The experimenter's page: who has done what, the next step of a participant, notes, exclusions, learning.
+//! The experimenter's page: progress, the next step of a participant, notes, exclusions, learning.
 
 use egui::{Button, Label, RichText, Ui, vec2};
 use nima_machine::config::RigConfig;
@@ -18,7 +18,7 @@ use crate::{
 const WHO: f32 = 250.0;
 const ASIDE: f32 = 300.0;
 
-/// Who moves the instruments.
+/// Source of the instruments' motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hand {
     /// The participant, from the screen.
@@ -32,7 +32,7 @@ pub(super) enum Hand {
 }
 
 impl Hand {
-    /// Nobody takes part.
+    /// Whether no person takes part.
     pub(super) const fn is_simulated(self) -> bool {
         matches!(self, Self::Simulated | Self::Emulated)
     }
@@ -47,7 +47,7 @@ impl Hand {
     }
 }
 
-/// What is shown of an open study.
+/// Displayed page of an open study.
 #[derive(Debug, Default)]
 enum Page {
     #[default]
@@ -56,21 +56,20 @@ enum Page {
     Sheet,
 }
 
-/// An open study.
 #[derive(Debug)]
 pub(super) struct Desk {
     pub(super) study: Study,
-    /// The participant whose next step it is.
+    /// The participant for the next step.
     chosen: String,
     hand: Hand,
     page: Page,
     /// Answers that were not submitted yet.
     sheet: Option<questions::Sheet>,
-    /// What was done last, or why it was not.
+    /// Result of the last action.
     pub(super) told: Option<String>,
     note: String,
     reason: String,
-    /// The trial that is to be left out; the participant without one.
+    /// The trial to exclude; `None` for the participant.
     left_out: Option<u32>,
     aside: Aside,
 }
@@ -79,7 +78,7 @@ impl Desk {
     pub(super) fn new(study: Study, told: Option<String>) -> Self {
         let rig = RigConfig::load(&study.plan().rig);
         let hand = rig.as_ref().map_or(Hand::OfRig, Hand::of);
-        // Whoever was in the middle of it comes first.
+        // A participant in the middle of a session comes first.
         let plan = study.plan();
         let state = study.state();
         let goes_on = plan.participants.iter().find(|one| !matches!(state.next(plan, one), Step::Done { .. }));
@@ -98,7 +97,7 @@ impl Desk {
         }
     }
 
-    /// Writes down how a trial ended. The loop must have ended.
+    /// Records the result of a trial. The loop must have ended.
     pub(super) fn finish(&mut self, trial: Trial) {
         let (words, notes) = trial.close(&mut self.study);
         for note in notes {
@@ -107,7 +106,7 @@ impl Desk {
         self.told = Some(words);
     }
 
-    /// Draws the page; `closed` is why no trial can begin now.
+    /// Draws the page; `closed` is the reason why no trial can start now.
     pub(super) fn ui(&mut self, ui: &mut Ui, closed: Option<&'static str>, starting: bool) -> Option<Leaves> {
         match &self.page {
             Page::Desk => self.desk_ui(ui, closed, starting),
@@ -138,13 +137,13 @@ impl Desk {
         }
     }
 
-    /// Back to the page, with what was done or why it was not.
+    /// Returns to the page, with the result of the action.
     fn after(&mut self, done: Result<(), StudyError>, words: &str) {
         self.page = Page::Desk;
         self.told = Some(done.map_or_else(|error| error.to_string(), |()| words.to_owned()));
     }
 
-    /// Shows the questionnaire that comes next, if one does.
+    /// Shows the next questionnaire, if there is one.
     fn ask(&mut self) {
         let Ok(Step::Questionnaire { questionnaire, after }) = self.study.next(&self.chosen) else { return };
         if !self.sheet.as_ref().is_some_and(|sheet| sheet.is(&self.chosen, questionnaire, after)) {
@@ -221,7 +220,7 @@ impl Desk {
                 let button = next_button(name, why.is_none()).min_size(vec2(260.0, 48.0));
                 begun = ui.add_enabled(why.is_none(), button).clicked();
             }
-            // A line of its own, so that what is below does not move.
+            // A separate line, so that the content below does not move.
             let told = why.map(str::to_owned).or_else(|| self.told.clone()).unwrap_or_default();
             ui.add(Label::new(told).wrap());
         });

@@ -1,4 +1,4 @@
-//! A study file that is made by clicks: a ready one, and what of it was changed.
+//! A study file created in the form: a template, and its changes.
 
 use std::path::{Path, PathBuf};
 
@@ -12,47 +12,46 @@ use nima_user_study::{
 use super::list::folder_of;
 use crate::extras::user_studies::{study, text};
 
-/// A study file as the form has it. Parts that are switched off keep their figures.
+/// A study file as the form shows it. Parts that are switched off keep their values.
 #[derive(Debug)]
 pub(super) struct Draft {
-    /// Name of the ready study.
+    /// Name of the template.
     pub(super) ready: &'static str,
     pub(super) file: StudyFile,
-    /// The scenes that can be chosen.
+    /// Scenes to choose from.
     pub(super) scenes: Vec<Place>,
-    /// What is done, with what this study has of it.
+    /// The task of this study.
     pub(super) task: Option<TaskFile>,
-    /// Only so many rings of the scene.
+    /// Use only some rings of the scene.
     pub(super) takes_few: bool,
     pub(super) rings: u32,
-    /// The measures that a trial in this scene can have.
+    /// Measures available in this scene.
     pub(super) measures: Vec<Known>,
     pub(super) practises: bool,
     pub(super) practice: Practice,
-    /// Which condition is practised, counted from 0; each in turn without one.
+    /// Practised condition, counted from 0; `None`: each in turn.
     pub(super) under: Option<usize>,
     pub(super) rests: bool,
     pub(super) breaks: Breaks,
-    /// Which condition the others are compared with.
+    /// Reference condition.
     pub(super) reference: Option<usize>,
 }
 
-/// A scene that can be chosen.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     /// Built-in name or file.
     pub(super) of: String,
     pub(super) name: String,
     pub(super) about: String,
-    /// Task of the study in this scene; the scene has one of its own without.
+    /// Task of the study in this scene; `None` if the scene has its own.
     task: Option<TaskFile>,
     kind: TaskKind,
     two_hands: bool,
-    /// How many rings it has.
+    /// Number of rings.
     pub(super) rings: u32,
 }
 
-/// A measure, by its key and in words.
+/// A measure, with its key and its text.
 #[derive(Clone, Debug)]
 pub(super) struct Known {
     pub(super) key: String,
@@ -70,10 +69,9 @@ impl Place {
         Some(Self { of, name, about: scene.description, task, kind, two_hands: scene.left.is_some(), rings })
     }
 
-    /// The measures that a trial here can have.
     fn measures(&self) -> Vec<Known> {
         let hands: &[Side] = if self.two_hands { &Side::LEFT_TO_RIGHT } else { &[Side::Right] };
-        // A simulated scene does not tell what leaves the picture.
+        // A simulated scene does not report objects that leave the image.
         let fits = |one: &&Definition| one.is_of(self.kind, self.two_hands) && one.id != "out_of_view_share";
         let known = |definition: &'static Definition| {
             let of = move |key| Known { key, words: definition.words, unit: definition.unit };
@@ -83,19 +81,19 @@ impl Place {
     }
 }
 
-/// What is done in the scene of this study.
+/// The task in the scene of this study.
 fn task_of(file: &StudyFile) -> Option<TaskFile> {
     TaskFile::of(study::scene_of(file).ok()?.task.as_ref()?).ok()
 }
 
-/// Two trials in a row within 150 s without a drop out of view, as in the study of the paper.
+/// Two trials in a row within 150 s without a drop out of view, as in the paper's study.
 fn usual_practice() -> Practice {
     let criterion = Criterion { time_s: 150.0, drops_out_of_view: 0, consecutive: 2, additional: 0, max_trials: 12 };
     Practice { under: None, not_reached: NotReached::GoOn, criterion }
 }
 
 impl Draft {
-    /// A ready study; `None` if there is none of this name.
+    /// `None` if no template has this name.
     pub(super) fn of(ready: &'static str) -> Option<Self> {
         let file = study::study_file(ready).ok()?;
         let place = |name: &Option<String>| {
@@ -124,7 +122,7 @@ impl Draft {
         })
     }
 
-    /// The study file as it is now.
+    /// The study file in its current state.
     pub(super) fn file(&self) -> StudyFile {
         let name = |at: Option<usize>| Some(self.file.conditions.get(at?)?.name.clone());
         let practice = Practice { under: name(self.under), ..self.practice.clone() };
@@ -137,12 +135,12 @@ impl Draft {
         }
     }
 
-    /// The scene as it was chosen.
+    /// The chosen scene.
     pub(super) fn place_of_scene(&self) -> Option<&Place> {
         self.scenes.iter().find(|place| place.of == self.file.scene)
     }
 
-    /// Another scene, with its task. Measures that no trial there has are gone, and rules that go by them.
+    /// Chooses another scene, with its task. Measures that are not available there are removed, with the rules that use them.
     pub(super) fn choose(&mut self, at: usize) {
         let Some(place) = self.scenes.get(at).filter(|place| place.of != self.file.scene).cloned() else { return };
         self.measures = place.measures();
@@ -161,7 +159,7 @@ impl Draft {
         }
     }
 
-    /// A trial is over after this time, s.
+    /// Time limit of a trial, s.
     pub(super) fn limit(&mut self, limit_s: f64) {
         if let Some(task) = &mut self.task {
             task.time_limit_s = limit_s;
@@ -169,7 +167,6 @@ impl Draft {
         }
     }
 
-    /// One rule of exclusion more.
     pub(super) fn add_rule(&mut self) {
         let is = Comparison::Above;
         let exclude = Excludes::Trial;
@@ -177,7 +174,7 @@ impl Draft {
         self.file.exclusion.push(ExclusionRule { measure, is, limit: None, exclude, times: 1 });
     }
 
-    /// One condition more, which is not yet different from others.
+    /// Adds a condition, which is not yet different from the others.
     pub(super) fn add(&mut self) {
         let delay_ms = self.file.conditions.iter().find_map(|condition| condition.delay_ms).or(Some(0.0));
         self.file.conditions.push(Condition {
@@ -190,7 +187,7 @@ impl Draft {
         });
     }
 
-    /// One condition less; what pointed to it points to none.
+    /// Removes a condition; references to it are cleared.
     pub(super) fn remove(&mut self, gone: usize) {
         self.file.conditions.remove(gone);
         let moved = |at: Option<usize>| at.filter(|at| *at != gone).map(|at| at - usize::from(at > gone));
@@ -198,7 +195,7 @@ impl Draft {
         self.reference = moved(self.reference);
     }
 
-    /// A folder for it that is not there yet.
+    /// A folder for the study that does not exist yet.
     pub(super) fn place(&self, data: &Path) -> PathBuf {
         let letters = self.file.name.trim().to_lowercase().chars().take(40).collect::<String>();
         let words: Vec<&str> =
@@ -213,7 +210,7 @@ impl Draft {
     }
 }
 
-/// The hand feels no force under this condition.
+/// Sets a condition without force.
 pub(super) fn without_force(condition: &mut Condition) {
     condition.no_force = true;
     condition.mode = None;
@@ -221,7 +218,7 @@ pub(super) fn without_force(condition: &mut Condition) {
     condition.own_motion = None;
 }
 
-/// The force of this condition is made in this way.
+/// Sets the mode of a condition with force.
 pub(super) fn with_mode(condition: &mut Condition, mode: Mode) {
     condition.no_force = false;
     condition.mode = Some(mode);

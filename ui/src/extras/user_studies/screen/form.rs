@@ -31,19 +31,18 @@ use crate::{
     words::{mode_meaning, mode_name},
 };
 
-/// Height of the foot with buttons and mistakes.
+/// Height of the footer with buttons and errors.
 const FOOT: f32 = 84.0;
-/// Share of the width that the left column takes.
+/// Fraction of the width for the left column.
 const LEFT: f32 = 0.42;
 
-/// State of the page.
 #[derive(Debug)]
 pub(super) struct Form {
     draft: Draft,
     told: Vec<String>,
 }
 
-/// What was chosen.
+/// The chosen action.
 pub(super) enum Done {
     Back,
     Made(Box<Study>),
@@ -54,7 +53,6 @@ impl Form {
         Some(Self { draft: Draft::of(READY[0])?, told: Vec::new() })
     }
 
-    /// Draws the page.
     pub(super) fn ui(&mut self, ui: &mut Ui, data: Option<&Path>) -> Option<Done> {
         let room = ui.available_size() - vec2(0.0, FOOT);
         let draft = &mut self.draft;
@@ -108,7 +106,7 @@ impl Form {
         done
     }
 
-    /// All that is wrong is told at once.
+    /// All errors are shown at once.
     fn make(&mut self, data: &Path) -> Option<Done> {
         let file = self.draft.file();
         self.told = study::mistakes(&file);

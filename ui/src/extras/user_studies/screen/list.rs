@@ -15,16 +15,15 @@ use crate::{
     extras::user_studies::text,
 };
 
-/// The folder of studies among the user's data.
+/// Folder of studies within the user's data.
 const FOLDER: &str = "studies";
 const PLAN: &str = "study.toml";
 const BUTTON: egui::Vec2 = vec2(150.0, 36.0);
 
-/// State of the page.
 #[derive(Debug, Default)]
 pub(super) struct List {
     rows: Vec<Row>,
-    /// The folder that the user wrote.
+    /// The folder typed by the user.
     other: String,
     told: Option<String>,
 }
@@ -36,25 +35,24 @@ struct Row {
     about: Result<String, String>,
 }
 
-/// What was chosen.
+/// The chosen action.
 pub(super) enum Done {
     Back,
     New,
     Open(Box<Study>),
 }
 
-/// The folder of studies.
 pub(super) fn folder_of(data: &Path) -> PathBuf {
     data.join(FOLDER)
 }
 
-/// Whether the list finds this folder by itself.
+/// Whether the list finds this folder automatically.
 pub(super) fn is_in(data: Option<&Path>, folder: &Path) -> bool {
     data.is_some_and(|data| folder.parent() == Some(&folder_of(data)))
 }
 
 impl List {
-    /// Reads the list anew.
+    /// Reads the list again.
     pub(super) fn read(&mut self, data: Option<&Path>, known: &[PathBuf]) {
         let entries = data.map(folder_of).and_then(|folder| std::fs::read_dir(folder).ok());
         let mut folders: Vec<PathBuf> = entries.into_iter().flatten().flatten().map(|entry| entry.path()).collect();
@@ -75,7 +73,6 @@ impl List {
         }
     }
 
-    /// Draws the page.
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
         let mut done = None;
         let mut wanted = None;
@@ -85,7 +82,7 @@ impl List {
             }
             ui.label(RichText::new(text::studies::OPEN.get()).font(theme::strong(19.0)));
         });
-        // A line of its own, so that what is below never moves.
+        // A separate line, so that the content below never moves.
         ui.add(Label::new(weak(self.told.clone().unwrap_or_default())).wrap());
         ui.add_space(4.0);
         let room = ui.available_size();
@@ -156,14 +153,13 @@ impl Row {
     }
 }
 
-/// Those who have finished, or are excluded.
+/// Number of finished or excluded participants.
 pub(super) fn finished(study: &Study) -> usize {
     let plan = study.plan();
     let state = study.state();
     plan.participants.iter().filter(|one| matches!(state.next(plan, one), Step::Done { .. })).count()
 }
 
-/// Whether it is blind, in a word.
 pub(super) fn blindness(study: &Study) -> &'static str {
     text::studies::blindness(study.plan().blind, study.state().unblinding.is_some())
 }

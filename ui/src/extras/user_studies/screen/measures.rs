@@ -1,4 +1,4 @@
-//! The parts of the form that say what is done and measured: scene, task, measures, and rules by which results are left out.
+//! The form's parts for task and measurement: scene, task, measures, and exclusion rules.
 
 use egui::{Button, ComboBox, DragValue, Grid, Label, Ui, vec2};
 use nima_score::LONGEST_TRIAL_S;
@@ -13,10 +13,9 @@ use crate::{
     extras::user_studies::text,
 };
 
-/// Width of the lists of measures that open, points.
+/// Width of the open lists of measures, points.
 const LIST: f32 = 460.0;
 
-/// Scene and task.
 pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
     card(ui, text::study_form::TASK.get(), text::study_form::TASK_HOVER.get(), |ui| {
         let mut chosen = None;
@@ -56,7 +55,7 @@ pub(super) fn task_ui(ui: &mut Ui, draft: &mut Draft) {
     });
 }
 
-/// What decides, and what else is in the report.
+/// The primary measure, and the others of the report.
 pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
     let Draft { file, measures, .. } = draft;
     card(ui, text::study_form::MEASURES.get(), text::study_form::MEASURES_HOVER.get(), |ui| {
@@ -88,7 +87,7 @@ pub(super) fn measures_ui(ui: &mut Ui, draft: &mut Draft) {
     });
 }
 
-/// Rules by which trials and participants are left out.
+/// Rules that exclude trials and participants.
 pub(super) fn exclusion_ui(ui: &mut Ui, draft: &mut Draft) {
     let mut gone = None;
     card(ui, text::study_form::EXCLUSION.get(), text::study_form::EXCLUSION_HOVER.get(), |ui| {
@@ -159,11 +158,11 @@ fn rule_ui(ui: &mut Ui, rule: &mut ExclusionRule, number: usize, measures: &[Kno
     }
 }
 
-/// A limit that nobody has set.
+/// Text for an unset limit.
 const NO_LIMIT: &str = "...";
 const COMPARISONS: [Comparison; 3] = [Comparison::Above, Comparison::Below, Comparison::Missing];
 
-/// One of these, by its words.
+/// A list of values, by their texts.
 fn choose_ui<T: PartialEq + Copy>(
     ui: &mut Ui,
     id: (&str, usize),
@@ -199,7 +198,6 @@ fn measure_ui(
     combo.response
 }
 
-/// A measure in words.
 fn meaning(measures: &[Known], key: &str) -> String {
     measures.iter().find(|known| known.key == *key).map_or_else(String::new, |known| known.words.to_owned())
 }

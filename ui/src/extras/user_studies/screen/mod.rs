@@ -1,8 +1,9 @@
-//! User studies in the window: the list of studies, the form of a new one, the experimenter's page, and a participant's trials, breaks and
-//! questionnaires.
+//! User studies in the window: the list of studies, the form of a new one, the experimenter's page, and a participant's
+//! trials, breaks and questionnaires.
 //!
-//! Of a blind study nothing here shows a mode, a gain or a delay: the form of a new study knows them and is dropped when the study is made,
-//! and a trial hands its condition to the loop alone. While a trial runs the window shows [`trial`] and nothing else.
+//! For a blind study nothing here shows a mode, a gain or a delay. Only the form of a new study contains them, and it is
+//! dropped when the study is created; a trial passes its condition only to the loop. While a trial runs the window shows
+//! [`trial`] and nothing else.
 
 mod aside;
 mod curve;
@@ -33,7 +34,7 @@ use crate::{
 use desk::{Desk, Hand};
 use trial::Trial;
 
-/// The pages, and the study that is open.
+/// The pages, and the open study.
 #[derive(Debug, Default)]
 pub(super) struct Studies {
     is_shown: bool,
@@ -41,13 +42,13 @@ pub(super) struct Studies {
     form: Option<form::Form>,
     desk: Option<Desk>,
     trial: Option<Trial>,
-    /// A trial that begins as soon as the rig of the study runs.
+    /// A trial that starts as soon as the rig of the study runs.
     wanted: Option<Wanted>,
-    /// What ran before the study.
+    /// Rig and scene that ran before the study.
     before: Option<Choice>,
 }
 
-/// A trial that is to begin.
+/// A trial that is about to start.
 #[derive(Clone, Debug)]
 struct Wanted {
     participant: String,
@@ -56,12 +57,11 @@ struct Wanted {
     is_starting: bool,
 }
 
-/// What the page of a study is left for.
+/// Reason for leaving the page of a study.
 #[derive(Debug)]
 enum Leaves {
-    /// Begin the next trial of this participant.
+    /// Start the next trial of this participant.
     Trial(String, Hand),
-    /// The study was closed.
     Closed,
 }
 
@@ -75,7 +75,7 @@ impl Studies {
         self.form = None;
     }
 
-    /// Draws the list, the form, or the study that is open.
+    /// Draws the list, the form, or the open study.
     fn page_ui(&mut self, ui: &mut Ui, mut room: Room<'_>) -> Option<Leaves> {
         if let Some(desk) = &mut self.desk {
             let closed = if room.is_over_a_line { Some(text::studies::NOT_OVER_A_LINE.get()) } else { room.closed };
@@ -107,7 +107,7 @@ impl Studies {
         None
     }
 
-    /// A trial begins when the rig of its study runs.
+    /// Starts a trial when the rig of its study runs.
     fn begin(&mut self, now: &Now<'_>) -> Option<Wish> {
         let wanted = self.wanted.as_mut().filter(|_| !now.is_starting)?;
         let Some(desk) = &mut self.desk else {
@@ -191,7 +191,7 @@ impl Page for Studies {
         let (scene, task) = study::scene_for(of, &rig, &hand).map_err(|error| format!("{error:#}"))?;
         let running = of.begin_trial(participant, wanted.hand.is_simulated(), &utc_now());
         let running = running.map_err(|error| error.to_string())?;
-        // Why a rig does not allow a condition would tell it.
+        // The reason why a rig does not permit a condition would reveal the condition.
         let rig = study::under(rig, running.condition()).ok();
         let trial = Trial::new(participant, running, task, wanted.hand, of.plan().trials_of_each());
         let is_by_mouse = trial.is_by_mouse();

@@ -1,4 +1,4 @@
-//! Questionnaires as a participant fills them in. What is missing is told, and nothing can be submitted before it is complete.
+//! Questionnaires for a participant. Missing answers are shown, and submitting requires complete answers.
 
 use egui::{Button, Label, Response, RichText, ScrollArea, Slider, TextEdit, Ui, vec2};
 use nima_user_study::{
@@ -15,7 +15,7 @@ use crate::{
     language::Text,
 };
 
-/// Width of a rating's line.
+/// Width of a rating line.
 const SLIDER: f32 = 420.0;
 const STEP: f64 = 5.0;
 
@@ -32,13 +32,13 @@ pub(super) struct Sheet {
     text: String,
 }
 
-/// What was chosen.
+/// The chosen action.
 pub(super) enum Done {
     Back,
     Submit(Answers),
 }
 
-/// All of them; `None` if one is missing.
+/// All values; `None` if one is missing.
 fn all<T: Copy + Default, const N: usize>(given: &[Option<T>; N]) -> Option<[T; N]> {
     given.iter().all(Option::is_some).then(|| given.map(Option::unwrap_or_default))
 }
@@ -62,12 +62,11 @@ impl Sheet {
         }
     }
 
-    /// Whether it is this one.
     pub(super) fn is(&self, participant: &str, which: Questionnaire, after: Option<Letter>) -> bool {
         self.participant == participant && self.which == which && self.after == after
     }
 
-    /// The answers, or what is missing.
+    /// The answers, or the missing items.
     fn answers(&self) -> Result<Answers, Vec<String>> {
         let missing = |names: &mut dyn Iterator<Item = String>| names.collect::<Vec<_>>();
         let unrated = || {
@@ -106,7 +105,6 @@ impl Sheet {
         }
     }
 
-    /// Draws the page.
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<Done> {
         let mut done = None;
         let title = text::questionnaires::asked(self.which, &self.participant, self.after);
@@ -156,7 +154,7 @@ impl Sheet {
                 ui.spacing_mut().slider_width = SLIDER;
                 let mut value = rating.map_or(50.0, f64::from);
                 let slider = Slider::new(&mut value, 0.0..=100.0).step_by(STEP).show_value(false);
-                // What was not rated yet must not look as if it were rated in the middle.
+                // A line that was not rated yet must not look like a rating in the middle.
                 let opacity = if rating.is_some() { 1.0 } else { 0.4 };
                 let slider = slider.trailing_fill(rating.is_some());
                 let response = ui.scope(|ui| {
@@ -164,7 +162,7 @@ impl Sheet {
                     ui.add(slider)
                 });
                 let response = response.inner.labelled_by(label.id);
-                // A press on the middle changes nothing and is an answer all the same.
+                // A press on the middle changes nothing, but counts as an answer.
                 if let Some(tapped) = tapped(&response) {
                     value = tapped;
                 } else if !(response.changed() || response.drag_started()) {
@@ -224,7 +222,7 @@ impl Sheet {
     }
 }
 
-/// Where a line was tapped so quickly that press and release came in one frame, which a slider does not notice: 0 to 100.
+/// Position (0 to 100) of a tap whose press and release arrived in one frame, which a slider misses.
 fn tapped(slider: &Response) -> Option<f64> {
     let (is_tap, at) = slider.ctx.input(|input| {
         let pointer = &input.pointer;
@@ -241,7 +239,7 @@ fn scale_ui(ui: &mut Ui, question: &str, answer: &mut Option<u8>, most: u8) {
     numbered_ui(ui, question, answer, most, 1, ["", ""]);
 }
 
-/// The same with what its first and its last number mean.
+/// Like [`scale_ui`], with the meanings of the first and last number.
 fn numbered_ui(
     ui: &mut Ui,
     question: &str,

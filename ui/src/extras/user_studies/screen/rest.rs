@@ -12,21 +12,20 @@ use crate::{
     extras::user_studies::text,
 };
 
-/// The clock on the screen goes on so often.
+/// Update interval of the clock.
 const AGAIN: Duration = Duration::from_millis(250);
 
-/// A break that has begun.
 #[derive(Debug)]
 pub(super) struct Rest {
     began: Instant,
     least_s: f64,
 }
 
-/// What was chosen.
+/// The chosen action.
 pub(super) enum Done {
-    /// Back to the experimenter's page: the break did not happen.
+    /// Back to the experimenter's page, without counting the break.
     Back,
-    /// It lasted so long, s.
+    /// Ended after this time, s.
     Over(f64),
 }
 
@@ -35,7 +34,6 @@ impl Rest {
         Self { began: Instant::now(), least_s }
     }
 
-    /// Draws the page.
     pub(super) fn ui(&self, ui: &mut Ui) -> Option<Done> {
         let seconds = self.began.elapsed().as_secs_f64();
         let left_s = self.least_s - seconds;

@@ -1,5 +1,5 @@
-//! A trial in the window: what the loop does is scored, and the participant sees the field, the task, the time and the label. Nothing else is
-//! on the screen but alarms and stop.
+//! A trial in the window: the run of the loop is scored, and the participant sees the field, the task, the time and the
+//! label. Only alarms and stop are shown in addition.
 
 use egui::{Align, Button, CentralPanel, Frame, Label, Layout, Margin, Panel, RichText, Ui, vec2};
 use nima_endoscope::Reel;
@@ -42,31 +42,30 @@ use crate::{
 /// Height of the line above the field.
 const HEAD: f32 = 64.0;
 
-/// A trial that has begun.
 #[derive(Debug)]
 pub(super) struct Trial {
     participant: String,
     running: Running,
     task: TaskFile,
     hand: Hand,
-    /// Trials of a participant.
+    /// Number of trials of a participant.
     of: u32,
     scoring: Option<Scoring>,
     recorder: Option<Recorder>,
     over: Option<Over>,
-    /// Number of the newest tick of each side, and how many did not come.
+    /// Number of the newest tick of each side, and count of missing ticks.
     newest: [Option<u64>; SIDES],
     lost: u64,
-    /// The next press on the button gives up.
+    /// The next press on the button aborts.
     is_asked: bool,
 }
 
-/// How it is over.
+/// End of a trial.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Over {
-    /// The task is done, or the time is.
+    /// The task is done, or the time limit is reached.
     Done,
-    /// Why it was broken off.
+    /// Aborted, for this reason.
     Broken(String),
 }
 
@@ -87,22 +86,20 @@ impl Trial {
         }
     }
 
-    /// It is broken off, if it is not over yet.
+    /// Aborts the trial, if it is not over yet.
     fn break_off_because(&mut self, why: &str) {
         self.over.get_or_insert_with(|| Over::Broken(why.to_owned()));
     }
 
-    /// Whether nothing more happens in it.
     pub(super) const fn is_over(&self) -> bool {
         self.over.is_some()
     }
 
-    /// The instruments are moved from the screen.
     pub(super) fn is_by_mouse(&self) -> bool {
         self.hand == Hand::Mouse
     }
 
-    /// Writes down how it ended; gives that in words, and what must be noted besides. The loop must have ended.
+    /// Records the end of the trial; returns its text, and further notes. The loop must have ended.
     pub(super) fn close(self, study: &mut Study) -> (String, Vec<String>) {
         let Self { participant, running, scoring, recorder, over, lost, .. } = self;
         let trial = running.trial();
@@ -223,7 +220,7 @@ impl Run for Trial {
     }
 }
 
-/// What the participant does now.
+/// Current instruction to the participant.
 fn state_words(live: &Live) -> &'static str {
     match live.state() {
         _ if live.first_tick().is_none() => text::studies::STATE_STARTING.get(),

@@ -5,21 +5,20 @@ use nima_user_study::{Label, Questionnaire};
 use crate::language::{Text, told, word};
 
 pub(in crate::extras::user_studies) const SUBMIT: Text = Text::of("Submit", "Absenden");
-pub(in crate::extras::user_studies) const SUBMITTED: Text = Text::of("The answers are kept", "Antworten gespeichert");
+pub(in crate::extras::user_studies) const SUBMITTED: Text = Text::of("Answers saved", "Antworten gespeichert");
 pub(in crate::extras::user_studies) const RATE: Text =
     Text::of("Click or drag on each line to rate it", "Zum Bewerten auf jede Linie klicken oder ziehen");
 pub(in crate::extras::user_studies) const PAIRS: Text = Text::of(
-    "Of each pair, choose what contributed more to the workload",
+    "In each pair, choose the item that contributed more to the workload",
     "Aus jedem Paar wählen, was mehr zur Beanspruchung beitrug",
 );
 pub(in crate::extras::user_studies) const AGREE: [Text; 2] =
     [Text::of("Strongly disagree", "Stimme gar nicht zu"), Text::of("Strongly agree", "Stimme voll zu")];
 pub(in crate::extras::user_studies) const FREE_TEXT: Text =
-    Text::of("What do you want to tell us?", "Was möchten Sie uns sagen?");
-pub(in crate::extras::user_studies) const FREE_TEXT_HINT: Text = Text::of("It may stay empty", "Darf leer bleiben");
+    Text::of("What would you like to tell us?", "Was möchten Sie uns sagen?");
+pub(in crate::extras::user_studies) const FREE_TEXT_HINT: Text = Text::of("May be left empty", "Darf leer bleiben");
 pub(in crate::extras::user_studies) const NOT_ANSWERED: Text = Text::of("not yet", "noch nicht");
 
-/// A questionnaire.
 pub(in crate::extras::user_studies) fn questionnaire(which: Questionnaire) -> &'static str {
     match which {
         Questionnaire::NasaTlx => word("NASA-TLX", "NASA-TLX"),
@@ -30,7 +29,6 @@ pub(in crate::extras::user_studies) fn questionnaire(which: Questionnaire) -> &'
     }
 }
 
-/// Of whom a questionnaire is about, and about what.
 pub(in crate::extras::user_studies) fn asked(which: Questionnaire, participant: &str, after: Option<Label>) -> String {
     let about = after.map_or_else(
         || word("the whole session", "die ganze Sitzung").to_owned(),
@@ -39,17 +37,14 @@ pub(in crate::extras::user_studies) fn asked(which: Questionnaire, participant: 
     told!("{}, {participant}, about {about}", "{}, {participant}, über {about}", questionnaire(which))
 }
 
-/// What is missing in a questionnaire.
 pub(in crate::extras::user_studies) fn missing(what: &[String]) -> String {
     told!("Missing: {}", "Es fehlt: {}", what.join(", "))
 }
 
-/// So many pairs were not compared.
 pub(in crate::extras::user_studies) fn missing_pairs(count: usize) -> String {
     if count == 1 { word("1 pair", "1 Paar").to_owned() } else { told!("{count} pairs", "{count} Paare") }
 }
 
-/// A statement by its number.
 pub(in crate::extras::user_studies) fn statement(number: usize) -> String {
     told!("statement {number}", "Aussage {number}")
 }

@@ -10,44 +10,45 @@ use crate::language::{Text, told, word};
 
 pub(in crate::extras::user_studies) const OPEN: Text = Text::of("User studies", "Nutzerstudien");
 pub(in crate::extras::user_studies) const OPEN_HOVER: Text =
-    Text::of("Make a study, or go on with one. F8", "Studie anlegen oder fortsetzen. F8");
+    Text::of("Create or continue a study. F8", "Studie anlegen oder fortsetzen. F8");
 pub(in crate::extras::user_studies) const BACK: Text = Text::of("Back", "Zurück");
 pub(in crate::extras::user_studies) const NEW: Text = Text::of("New study", "Neue Studie");
 pub(in crate::extras::user_studies) const YOURS: Text = Text::of("Studies", "Studien");
 pub(in crate::extras::user_studies) const YOURS_HOVER: Text = Text::of(
-    "Those in your data folder, and others that were opened here before",
+    "Studies in your data folder, and others that were opened here before",
     "Die im Datenordner und andere, die hier schon geöffnet waren",
 );
-pub(in crate::extras::user_studies) const NONE: Text =
-    Text::of("There is none yet: make one", "Noch keine: eine anlegen");
+pub(in crate::extras::user_studies) const NONE: Text = Text::of("No study yet: create one", "Noch keine: eine anlegen");
 pub(in crate::extras::user_studies) const OPEN_THIS: Text = Text::of("Open", "Öffnen");
 pub(in crate::extras::user_studies) const OTHER: Text = Text::of("Another study", "Andere Studie");
-pub(in crate::extras::user_studies) const OTHER_FOLDER: Text = Text::of("Its folder", "Ihr Ordner");
+pub(in crate::extras::user_studies) const OTHER_FOLDER: Text = Text::of("Study folder", "Ordner der Studie");
 pub(in crate::extras::user_studies) const OTHER_OPEN: Text = Text::of("Open this folder", "Diesen Ordner öffnen");
 pub(in crate::extras::user_studies) const NO_FOLDER: Text = Text::of(
-    "There is no folder for your files: set NIMA_DATA_DIR",
+    "No folder for your files was found: set NIMA_DATA_DIR",
     "Kein Ordner für Ihre Dateien: NIMA_DATA_DIR setzen",
 );
 pub(in crate::extras::user_studies) const NOT_OVER_A_LINE: Text = Text::of(
-    "A study needs arm and handle at this machine, because it sets the delay itself",
+    "A study needs arm and handle on this machine, because it sets the delay itself",
     "Eine Studie braucht Arm und Handgerät an diesem Rechner, weil sie die Verzögerung selbst einstellt",
 );
 
 pub(in crate::extras::user_studies) const CLOSE: Text = Text::of("Close the study", "Studie schließen");
-pub(in crate::extras::user_studies) const CLOSE_HOVER: Text =
-    Text::of("Nothing is lost: it goes on from here another time", "Nichts geht verloren: sie geht später hier weiter");
+pub(in crate::extras::user_studies) const CLOSE_HOVER: Text = Text::of(
+    "Nothing is lost: you can continue the study from here later",
+    "Nichts geht verloren: die Studie lässt sich später hier fortsetzen",
+);
 pub(in crate::extras::user_studies) const WHO: Text = Text::of("Participants", "Versuchspersonen");
 pub(in crate::extras::user_studies) const WHO_HOVER: Text =
-    Text::of("Pseudonyms; who is who must not stand here", "Pseudonyme; wer wer ist, darf hier nicht stehen");
+    Text::of("Pseudonyms only: do not enter real names here", "Nur Pseudonyme: hier keine echten Namen eintragen");
 pub(in crate::extras::user_studies) const NEXT_STEP: Text = Text::of("Next step", "Als Nächstes");
 pub(in crate::extras::user_studies) const NEXT_STEP_HOVER: Text =
-    Text::of("What the study asks of this participant now", "Was jetzt für diese Versuchsperson ansteht");
+    Text::of("What this participant does next", "Was jetzt für diese Versuchsperson ansteht");
 pub(in crate::extras::user_studies) const HAND: Text = Text::of("Moved by", "Bewegt durch");
 pub(in crate::extras::user_studies) const BY_MOUSE: Text = Text::of("the mouse", "die Maus");
 pub(in crate::extras::user_studies) const BY_SIMULATED: Text = Text::of("a simulated hand", "simulierte Hand");
 pub(in crate::extras::user_studies) const BY_RIG: Text = Text::of("the handle of the rig", "das Handgerät des Aufbaus");
 pub(in crate::extras::user_studies) const BY_SIMULATED_HOVER: Text = Text::of(
-    "For trying out: the trial is marked as simulated",
+    "To try the study out: the trial is marked as simulated",
     "Zum Ausprobieren: der Versuch wird als simuliert \
      markiert",
 );
@@ -57,45 +58,45 @@ pub(in crate::extras::user_studies) const NOT_STARTED: Text =
     Text::of("The rig of the study did not start", "Der Aufbau der Studie ist nicht gestartet");
 pub(in crate::extras::user_studies) const LEARNING: Text = Text::of("Learning", "Lernen");
 pub(in crate::extras::user_studies) const LEARNING_HOVER: Text = Text::of(
-    "Time of every completed trial, in order, whatever its condition: rings are practice, discs are trials that count",
+    "Time of every completed trial, in order, for all conditions: rings are practice, discs are trials that count",
     "Zeit jedes abgeschlossenen Versuchs, der Reihe nach, unabhängig von der Bedingung: Ringe sind Übung, Scheiben \
      zählende Versuche",
 );
 pub(in crate::extras::user_studies) const NO_TIMES: Text =
-    Text::of("No trial was completed yet", "Noch kein Versuch abgeschlossen");
+    Text::of("No trial completed yet", "Noch kein Versuch abgeschlossen");
 pub(in crate::extras::user_studies) const TRIAL_AXIS: Text = Text::of("trial", "Versuch");
 pub(in crate::extras::user_studies) const TIME_AXIS: Text = Text::of("time (s)", "Zeit (s)");
 pub(in crate::extras::user_studies) const NOTE: Text = Text::of("Note", "Notiz");
 pub(in crate::extras::user_studies) const NOTE_HOVER: Text = Text::of(
-    "Stands in the report; it must not tell who the participant is",
-    "Steht im Bericht; darf nicht verraten, wer die Versuchsperson ist",
+    "Appears in the report; it must not identify the participant",
+    "Erscheint im Bericht; darf die Versuchsperson nicht identifizieren",
 );
 pub(in crate::extras::user_studies) const NOTE_FIELD: Text = Text::of("What happened", "Was geschah");
-pub(in crate::extras::user_studies) const NOTE_KEEP: Text = Text::of("Keep the note", "Notiz speichern");
-pub(in crate::extras::user_studies) const NOTE_KEPT: Text = Text::of("The note is kept", "Notiz gespeichert");
+pub(in crate::extras::user_studies) const NOTE_KEEP: Text = Text::of("Save note", "Notiz speichern");
+pub(in crate::extras::user_studies) const NOTE_KEPT: Text = Text::of("Note saved", "Notiz gespeichert");
 pub(in crate::extras::user_studies) const LEAVE_OUT: Text =
-    Text::of("Leave out of the analysis", "Von der Auswertung ausschließen");
+    Text::of("Exclude from the analysis", "Von der Auswertung ausschließen");
 pub(in crate::extras::user_studies) const LEAVE_OUT_HOVER: Text = Text::of(
-    "What was done stays in the journal; the reason stands in the report",
-    "Was getan wurde, bleibt im Journal; der Grund steht im Bericht",
+    "The data stay in the journal; the reason appears in the report",
+    "Die Daten bleiben im Journal; der Grund erscheint im Bericht",
 );
 pub(in crate::extras::user_studies) const EVERYTHING: Text = Text::of("The participant", "Die Versuchsperson");
 pub(in crate::extras::user_studies) const REASON: Text = Text::of("Reason", "Grund");
-pub(in crate::extras::user_studies) const LEAVE_OUT_NOW: Text = Text::of("Leave it out", "Ausschließen");
+pub(in crate::extras::user_studies) const LEAVE_OUT_NOW: Text = Text::of("Exclude", "Ausschließen");
 pub(in crate::extras::user_studies) const ABOUT: Text = Text::of("Study", "Studie");
 pub(in crate::extras::user_studies) const ABOUT_HOVER: Text =
-    Text::of("What everybody may know of it", "Was alle davon wissen dürfen");
+    Text::of("What everyone may know about the study", "Was alle davon wissen dürfen");
 pub(in crate::extras::user_studies) const COMMITMENT: Text = Text::of("Commitment", "Prüfsumme");
 pub(in crate::extras::user_studies) const COMMITMENT_HOVER: Text = Text::of(
-    "BLAKE2b-256 of the sealed assignment. Keep it outside of the folder: it proves later that nobody changed the \
-     assignment.",
+    "BLAKE2b-256 of the sealed assignment. Keep it outside the folder: it proves later that the assignment was \
+     not changed.",
     "BLAKE2b-256 der versiegelten Zuteilung. Außerhalb des Ordners aufbewahren: sie beweist später, dass niemand die \
      Zuteilung geändert hat.",
 );
 pub(in crate::extras::user_studies) const COPY: Text = Text::of("Copy the commitment", "Prüfsumme kopieren");
 pub(in crate::extras::user_studies) const REPORT: Text = Text::of("Report", "Bericht");
 pub(in crate::extras::user_studies) const REPORT_HOVER: Text = Text::of(
-    "The whole analysis as one page; a study that is blind stays blind",
+    "The whole analysis on one page; a blind study stays blind",
     "Die ganze Auswertung als eine Seite; eine verblindete Studie bleibt verblindet",
 );
 pub(in crate::extras::user_studies) const REPORT_WRITE: Text = Text::of("Write the report", "Bericht schreiben");
@@ -103,37 +104,39 @@ pub(in crate::extras::user_studies) const REPORT_WRITING: Text =
     Text::of("Writing the report", "Bericht wird geschrieben");
 pub(in crate::extras::user_studies) const REPORT_OPEN: Text = Text::of("Open the report", "Bericht öffnen");
 pub(in crate::extras::user_studies) const REPORT_NOT_OPENED: Text = Text::of(
-    "No program of this desktop opens it: open the file report.html in the study's folder yourself",
+    "No program on this desktop can open the report: open the file report.html in the study folder yourself",
     "Kein Programm des Desktops öffnet ihn: die Datei report.html im Ordner der Studie selbst öffnen",
 );
 pub(in crate::extras::user_studies) const UNBLINDING: Text = Text::of("Unblinding", "Entblindung");
 pub(in crate::extras::user_studies) const UNBLINDING_HOVER: Text = Text::of(
-    "Shows what each label stands for; name, reason and time are kept in the journal",
+    "Shows the condition behind each label; name, reason and time are saved in the journal",
     "Zeigt, wofür jedes Label steht; Name, Grund und Zeit kommen ins Journal",
 );
 pub(in crate::extras::user_studies) const UNBLIND_NAME: Text = Text::of("Your name", "Ihr Name");
 pub(in crate::extras::user_studies) const UNBLIND_WHY: Text =
-    Text::of("Reason of the unblinding", "Grund der Entblindung");
+    Text::of("Reason for unblinding", "Grund der Entblindung");
 pub(in crate::extras::user_studies) const UNBLIND: Text = Text::of("Unblind the study", "Studie entblinden");
 pub(in crate::extras::user_studies) const UNBLIND_EARLY: Text = Text::of(
-    "Not everybody has finished: trials after it are marked",
+    "Not all participants have finished: trials after unblinding are marked",
     "Noch nicht alle fertig: spätere Versuche werden markiert",
 );
 pub(in crate::extras::user_studies) const NOT_BLIND: Text =
     Text::of("The study is not blind", "Die Studie ist nicht verblindet");
 pub(in crate::extras::user_studies) const SIMULATED: Text =
-    Text::of("Simulated trials or answers are in it", "Enthält simulierte Versuche oder Antworten");
+    Text::of("Contains simulated trials or answers", "Enthält simulierte Versuche oder Antworten");
 
-pub(in crate::extras::user_studies) const GIVE_UP: Text = Text::of("Give up this trial", "Versuch abbrechen");
-pub(in crate::extras::user_studies) const GIVE_UP_HOVER: Text =
-    Text::of("The study's rule says whether it is done again", "Ob er wiederholt wird, sagt die Regel der Studie");
-pub(in crate::extras::user_studies) const GIVE_UP_NOW: Text = Text::of("Give up now?", "Jetzt abbrechen?");
+pub(in crate::extras::user_studies) const GIVE_UP: Text = Text::of("Abort this trial", "Versuch abbrechen");
+pub(in crate::extras::user_studies) const GIVE_UP_HOVER: Text = Text::of(
+    "The rule of the study determines whether the trial is repeated",
+    "Ob er wiederholt wird, sagt die Regel der Studie",
+);
+pub(in crate::extras::user_studies) const GIVE_UP_NOW: Text = Text::of("Abort now?", "Jetzt abbrechen?");
 pub(in crate::extras::user_studies) const STATE_STARTING: Text = Text::of("Starting", "Startet");
-pub(in crate::extras::user_studies) const STATE_IDLE: Text = Text::of("Press Engage to begin", "Zum Beginnen koppeln");
+pub(in crate::extras::user_studies) const STATE_IDLE: Text = Text::of("Press Engage to start", "Zum Beginnen koppeln");
 pub(in crate::extras::user_studies) const STATE_HOLD: Text =
-    Text::of("Hold the handle still until it has engaged", "Handgerät stillhalten, bis es gekoppelt ist");
+    Text::of("Hold the handle still until the arm has engaged", "Handgerät stillhalten, bis der Arm gekoppelt ist");
 pub(in crate::extras::user_studies) const STATE_STOPPED: Text = Text::of(
-    "This trial is over: it was stopped. Press Release stop to go back.",
+    "This trial was stopped and is over. Press Release stop to go back.",
     "Dieser Versuch ist vorbei: er wurde angehalten. Halt lösen führt zurück.",
 );
 pub(in crate::extras::user_studies) const KEYS_SEARCH: Text =
@@ -143,14 +146,13 @@ pub(in crate::extras::user_studies) const BREAK: Text = Text::of("Break", "Pause
 pub(in crate::extras::user_studies) const BREAK_OVER: Text = Text::of("The break may end", "Die Pause darf enden");
 pub(in crate::extras::user_studies) const BREAK_END: Text = Text::of("End the break", "Pause beenden");
 pub(in crate::extras::user_studies) const BREAK_MAY_END: Text =
-    Text::of("It may last longer", "Sie darf länger dauern");
+    Text::of("The break may last longer", "Sie darf länger dauern");
 pub(in crate::extras::user_studies) const BREAK_BACK: Text = Text::of(
-    "Back: the break did not happen, and stays the next step",
-    "Zurück: ohne Pause; sie bleibt der nächste Schritt",
+    "Back: does not count as a break; the break stays the next step",
+    "Zurück: zählt nicht als Pause; die Pause bleibt der nächste Schritt",
 );
 pub(in crate::extras::user_studies) const BREAK_DONE: Text = Text::of("The break is over", "Die Pause ist vorbei");
 
-/// A study in the list.
 pub(in crate::extras::user_studies) fn standing(
     finished: usize,
     participants: usize,
@@ -163,7 +165,6 @@ pub(in crate::extras::user_studies) fn standing(
     )
 }
 
-/// Whether it is blind, in a word.
 pub(in crate::extras::user_studies) fn blindness(blind: bool, unblinded: bool) -> &'static str {
     match (blind, unblinded) {
         (false, _) => word("not blind", "nicht verblindet"),
@@ -172,7 +173,6 @@ pub(in crate::extras::user_studies) fn blindness(blind: bool, unblinded: bool) -
     }
 }
 
-/// Name of a button in the list.
 pub(in crate::extras::user_studies) fn open_named(name: &str) -> String {
     told!("Open {name}", "{name} öffnen")
 }
@@ -181,7 +181,6 @@ fn attempt(attempt: u32) -> String {
     if attempt > 1 { told!(", attempt {attempt}", ", Anlauf {attempt}") } else { String::new() }
 }
 
-/// What a participant does next; `trials` in all.
 pub(in crate::extras::user_studies) fn next(step: &Step, trials: u32) -> String {
     match step {
         Step::Practice { number, attempt: nth } => {
@@ -201,24 +200,25 @@ pub(in crate::extras::user_studies) fn next(step: &Step, trials: u32) -> String 
         Step::Questionnaire { questionnaire: which, after: None } => {
             told!("{} at the end", "{} am Ende", questionnaire(*which))
         }
-        Step::Running { trial } => told!("The end of trial {}", "Das Ende von Versuch {}", trial.number),
+        Step::Running { trial } => {
+            told!("Waiting for the end of trial {}", "Warten auf das Ende von Versuch {}", trial.number)
+        }
         Step::Done { why: Done::Finished } => word("Finished", "Fertig").to_owned(),
         Step::Done { why: Done::Excluded } => word("Excluded", "Ausgeschlossen").to_owned(),
     }
 }
 
-/// On the button of the next step; `None` if there is none.
+/// Label of the button of the next step; `None` if the step has no button.
 pub(in crate::extras::user_studies) fn begin(step: &Step) -> Option<&'static str> {
     match step {
-        Step::Practice { .. } => Some(word("Begin the practice trial", "Übungsversuch beginnen")),
-        Step::Trial { .. } => Some(word("Begin the trial", "Versuch beginnen")),
-        Step::Break { .. } => Some(word("Begin the break", "Pause beginnen")),
+        Step::Practice { .. } => Some(word("Start the practice trial", "Übungsversuch beginnen")),
+        Step::Trial { .. } => Some(word("Start the trial", "Versuch beginnen")),
+        Step::Break { .. } => Some(word("Start the break", "Pause beginnen")),
         Step::Questionnaire { .. } => Some(word("Fill in the questionnaire", "Fragebogen ausfüllen")),
         Step::Running { .. } | Step::Done { .. } => None,
     }
 }
 
-/// What a participant has done.
 pub(in crate::extras::user_studies) fn done(
     practice: usize,
     trials: usize,
@@ -228,18 +228,16 @@ pub(in crate::extras::user_studies) fn done(
 ) -> String {
     let lost = if lost > 0 { told!(" ({lost} without a result)", " ({lost} ohne Ergebnis)") } else { String::new() };
     told!(
-        "Done: {practice} of practice, {trials} trials{lost}, {breaks} breaks, {interruptions} interruptions",
+        "Done: {practice} practice trials, {trials} trials{lost}, {breaks} breaks, {interruptions} interruptions",
         "Erledigt: {practice} Übungsversuche, {trials} Versuche{lost}, {breaks} Pausen, {interruptions} Unterbrechungen"
     )
 }
 
-/// The order of a participant's labels.
 pub(in crate::extras::user_studies) fn order(labels: &[Label]) -> String {
     let labels: Vec<String> = labels.iter().map(ToString::to_string).collect();
     told!("Order {}", "Reihenfolge {}", labels.join(" "))
 }
 
-/// The trial on the screen.
 pub(in crate::extras::user_studies) fn trial(trial: TrialId, trials: u32, label: Option<Label>) -> String {
     let nth = attempt(trial.attempt);
     match (trial.phase, label) {
@@ -253,35 +251,30 @@ pub(in crate::extras::user_studies) fn trial(trial: TrialId, trials: u32, label:
     }
 }
 
-/// Time on the screen, minutes and seconds.
 pub(in crate::extras::user_studies) fn clock(seconds: f64) -> String {
     let whole = if seconds.is_finite() { seconds.max(0.0) as u64 } else { 0 };
     format!("{}:{:02}", whole / 60, whole % 60)
 }
 
-/// How long a break lasts.
 pub(in crate::extras::user_studies) fn break_least(least_s: f64) -> String {
     told!(
-        "Until it may end; the study asks for {} at least",
+        "Time until the break may end; the study requires at least {}",
         "Bis sie enden darf; die Studie verlangt mindestens {}",
         clock(least_s)
     )
 }
 
-/// Time of a trial, of its limit.
 pub(in crate::extras::user_studies) fn time_of(seconds: f64, limit_s: f64) -> String {
     told!("{} of {}", "{} von {}", clock(seconds), clock(limit_s))
 }
 
-/// Trials of a learning curve.
 pub(in crate::extras::user_studies) fn curve(participant: &str, practice: usize, trials: usize) -> String {
     told!(
-        "Learning of {participant}: {practice} trials of practice, {trials} trials completed",
+        "Learning of {participant}: {practice} practice trials, {trials} trials completed",
         "Lernen von {participant}: {practice} Übungsversuche, {trials} Versuche abgeschlossen"
     )
 }
 
-/// What is drawn of them.
 pub(in crate::extras::user_studies) fn curve_marks(curve: Option<&LearningCurve>) -> String {
     let marks = word("Rings: practice. Discs: trials that count.", "Ringe: Übung. Scheiben: zählende Versuche.");
     match curve {
@@ -307,7 +300,6 @@ pub(in crate::extras::user_studies) fn curve_marks(curve: Option<&LearningCurve>
     }
 }
 
-/// Facts of a study: its rig, who has finished, whether it is blind.
 pub(in crate::extras::user_studies) fn facts(
     rig: &str,
     finished: usize,
@@ -321,49 +313,42 @@ pub(in crate::extras::user_studies) fn facts(
     )
 }
 
-/// What was left out.
 pub(in crate::extras::user_studies) fn left_out(participant: &str, trial: Option<u32>) -> String {
     trial.map_or_else(
-        || told!("{participant} is left out", "{participant} ist ausgeschlossen"),
-        |trial| told!("{participant}, trial {trial}: left out", "{participant}, Versuch {trial}: ausgeschlossen"),
+        || told!("{participant}: excluded", "{participant}: ausgeschlossen"),
+        |trial| told!("{participant}, trial {trial}: excluded", "{participant}, Versuch {trial}: ausgeschlossen"),
     )
 }
 
-/// Who opened it, when and why.
 pub(in crate::extras::user_studies) fn unblinded(who: &str, at: &str, why: &str) -> String {
     told!("Unblinded by {who} at {at}: {why}", "Entblindet von {who}, {at}: {why}")
 }
 
-/// A label and its condition.
 pub(in crate::extras::user_studies) fn stands_for(label: Label, name: &str) -> String {
     format!("{label}: {name}")
 }
 
-/// Where the report is.
 pub(in crate::extras::user_studies) fn report_written(page: &Path) -> String {
     told!("Written: {}", "Geschrieben: {}", page.display())
 }
 
-/// It was not written.
 pub(in crate::extras::user_studies) fn report_failed(why: &str) -> String {
     told!("Not written: {why}", "Nicht geschrieben: {why}")
 }
 
-/// Ticks that did not reach the score, for the journal.
+/// Entry of the journal.
 pub(in crate::extras::user_studies) fn note_lost(trial: TrialId, lost: u64) -> String {
     told!(
-        "trial {}: {lost} ticks of the loop did not reach the score",
+        "trial {}: {lost} ticks of the loop are missing from the score",
         "Versuch {}: {lost} Takte der Regelung fehlen in der Wertung",
         trial.number
     )
 }
 
-/// The recording of a trial has a hole or an early end.
 pub(in crate::extras::user_studies) fn record_failed(why: &str) -> String {
-    told!("The recording of the trial is not whole: {why}", "Die Aufzeichnung des Versuchs ist unvollständig: {why}")
+    told!("The recording of the trial is incomplete: {why}", "Die Aufzeichnung des Versuchs ist unvollständig: {why}")
 }
 
-/// A trial by its number.
 pub(in crate::extras::user_studies) fn of_trial(number: u32) -> String {
     told!("Trial {number}", "Versuch {number}")
 }

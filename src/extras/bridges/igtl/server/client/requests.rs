@@ -1,23 +1,23 @@
-//! Messages in what a client sends, piece by piece.
+//! Splits a client's data into messages.
 
 use super::super::super::{Header, Message, Wrong};
 
-/// Longest body that is read; a request has 36 bytes. What is longer is passed over.
+/// Maximum body that is parsed, bytes; a request has 36 bytes. Longer ones are skipped.
 const LONGEST: u64 = 4096;
 
-/// The message that is coming.
+/// The message being received.
 #[derive(Debug, Default)]
 pub(super) struct Requests {
     buffer: Vec<u8>,
-    /// Bytes of a long body that are still to come.
+    /// Remaining bytes of a long body.
     passed_over: u64,
 }
 
 impl Requests {
-    /// Takes the next bytes, and hands over the messages that have become whole with them.
+    /// Processes the next bytes and passes the messages that they complete to `hear`.
     ///
     /// # Errors
-    /// [`Wrong`] if a header is none: where the next message begins is then unknown.
+    /// [`Wrong`] if a header is invalid: the position of the next message is then unknown.
     pub(super) fn take(&mut self, mut bytes: &[u8], mut hear: impl FnMut(Result<Message, Wrong>)) -> Result<(), Wrong> {
         loop {
             let skipped = bytes.len().min(usize::try_from(self.passed_over).unwrap_or(usize::MAX));
@@ -40,7 +40,7 @@ impl Requests {
         }
     }
 
-    /// Whether so many bytes are there.
+    /// Collects bytes; returns whether there are enough.
     fn fill(&mut self, bytes: &mut &[u8], length: usize) -> bool {
         let wanted = length.saturating_sub(self.buffer.len()).min(bytes.len());
         let (taken, rest) = bytes.split_at(wanted);

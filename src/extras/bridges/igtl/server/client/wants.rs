@@ -1,17 +1,17 @@
-//! What a client wants, and when.
+//! A client's subscriptions and their timing.
 
 use std::time::Instant;
 
 use super::super::super::Kind;
 
-/// Time between two bundles, s: where a client does not ask, the shortest, and the longest.
+/// Interval between two bundles, s: the default, the minimum, and the maximum.
 const USUAL_S: f64 = 1.0 / 60.0;
 const SHORTEST_S: f64 = 0.01;
 const LONGEST_S: f64 = 1.0;
-/// A tick that comes so much earlier is the one, s.
+/// A tick that is early by up to this counts as the due one, s.
 pub(in super::super) const EARLY_S: f64 = 1e-4;
 
-/// Some kinds of messages.
+/// A set of message kinds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in super::super) struct Kinds(u16);
 
@@ -36,22 +36,22 @@ impl Kinds {
         self.0 == 0
     }
 
-    /// Those of them that a moment is told by.
+    /// The kinds that are part of a state.
     pub(in super::super) fn of_moment(self) -> impl Iterator<Item = Kind> {
         let is_other = |kind: &Kind| matches!(kind, Kind::Image | Kind::Capability | Kind::Status);
         Kind::ALL.into_iter().filter(move |kind| self.has(*kind) && !is_other(kind))
     }
 }
 
-/// What a client wants.
+/// The subscriptions of a client.
 #[derive(Debug)]
 pub(in super::super) struct Wants {
     streams: Kinds,
     once: Kinds,
     interval_s: f64,
-    /// The loop's time from which on the next bundle is due, s.
+    /// Time of the loop at which the next bundle is due, s.
     pub(in super::super) due_s: f64,
-    /// When it is told the next time how the loop is; `None`: now.
+    /// When the next status is due; `None`: now.
     pub(in super::super) status_due: Option<Instant>,
 }
 
@@ -66,7 +66,7 @@ impl Default for Wants {
 }
 
 impl Wants {
-    /// This kind, again and again; so often, if that is told.
+    /// Subscribes to this kind, with this interval if given.
     pub(super) fn start(&mut self, kind: Kind, interval_ms: Option<u32>) {
         self.streams.insert(kind);
         if let Some(interval_ms) = interval_ms.filter(|interval_ms| *interval_ms > 0) {
@@ -75,24 +75,24 @@ impl Wants {
         self.due_s = f64::NEG_INFINITY;
     }
 
-    /// This kind no more.
+    /// Ends the subscription to this kind.
     pub(super) fn stop(&mut self, kind: Kind) {
         self.streams.remove(kind);
     }
 
-    /// This kind once.
+    /// Requests this kind once.
     pub(super) fn ask(&mut self, kind: Kind) {
         self.once.insert(kind);
     }
 
-    /// What it asked for once, of the loop.
+    /// Returns and clears the one-time requests for the loop's data.
     pub(in super::super) fn take_asked(&mut self) -> Kinds {
         let asked = self.once_of_loop();
         self.once.0 &= !asked.0;
         asked
     }
 
-    /// Whether it has asked for something of the loop.
+    /// Whether there is a one-time request for the loop's data.
     pub(in super::super) const fn asks(&self) -> bool {
         !self.once_of_loop().is_empty()
     }
@@ -103,22 +103,22 @@ impl Wants {
         asked
     }
 
-    /// Whether it wants to be told of states.
+    /// Whether it wants status messages.
     pub(in super::super) fn hears_states(&self) -> bool {
         self.streams.has(Kind::Status)
     }
 
-    /// Whether it wants a picture.
+    /// Whether it wants an image.
     pub(in super::super) fn looks(&self) -> bool {
         self.streams.has(Kind::Image) || self.once.has(Kind::Image)
     }
 
-    /// It has got a picture.
+    /// Called when it has received an image.
     pub(in super::super) fn has_seen(&mut self) {
         self.once.remove(Kind::Image);
     }
 
-    /// What is due at this time of the loop, s; then the next time is set.
+    /// Returns the data due at this time of the loop, s, and sets the next time.
     pub(in super::super) fn due(&mut self, t_s: f64) -> Option<Kinds> {
         // The clock of another loop.
         if self.due_s > t_s + 2.0 * LONGEST_S {
@@ -137,7 +137,7 @@ impl Wants {
 mod tests {
     use super::*;
 
-    /// Bundles in ten seconds of a loop of 1 kHz, and the shortest and longest time between two, ms.
+    /// Bundles in ten seconds of a loop of 1 kHz, and the minimum and maximum interval, ms.
     fn bundles(wants: &mut Wants) -> (usize, u32, u32) {
         let due: Vec<u32> = (0..10_000_u32).filter(|ms| wants.due(f64::from(*ms) * 1e-3).is_some()).collect();
         let between = || due.windows(2).map(|pair| pair[1] - pair[0]);
@@ -166,7 +166,7 @@ mod tests {
         let mut wants = Wants::default();
         assert!(wants.due(1000.0).is_some() && wants.due(1000.001).is_none());
         assert!(wants.due(0.0).is_some() && wants.due(0.001).is_none());
-        // After a pause nothing is caught up.
+        // After a pause nothing is made up.
         assert!(wants.due(0.9).is_some() && wants.due(0.901).is_none());
     }
 

@@ -1,4 +1,4 @@
-//! What the bridge costs the loop, and how late its clients are, on the real clock.
+//! Cost of the bridge for the loop, and delay of its clients, on the real clock.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ fn percentiles(of: &Histogram<u64>) -> String {
     )
 }
 
-/// A loop of the simulated rig on the real clock, recorded to nobody but the bridge; what its ticks tell of their lateness.
+/// Runs the simulated rig on the real clock with the bridge as the only recipient; returns the lateness of its ticks.
 fn run(server: &Server, seconds: u64) -> Histogram<u64> {
     let rig = RigConfig::load("simulated").unwrap();
     let scene = Scene::load("bimanual").unwrap();
@@ -56,7 +56,7 @@ fn run(server: &Server, seconds: u64) -> Histogram<u64> {
     late
 }
 
-/// How late bundles come: the time of their arrival less their stamp, less the least of all (the recorder's estimate of when the loop began).
+/// Delay of bundles: arrival minus time stamp, minus the minimum of all (the recorder's estimate of the loop's start).
 fn lateness(server: &Server, ends: &Arc<AtomicBool>) -> JoinHandle<(Histogram<u64>, Histogram<u64>)> {
     let mut peer = Peer::of(server);
     let ends = Arc::clone(ends);

@@ -1,4 +1,4 @@
-//! How an emulated servo moves, measures and protects itself.
+//! Motion, measurements and self-protection of an emulated servo.
 
 use nima_devices::dynamixel::table::{self, HardwareError, TICK_WRAP, TICKS_PER_TURN, VELOCITY_UNIT_RAD_S};
 
@@ -10,11 +10,11 @@ use super::{
     Servo,
 };
 
-/// Full drive at standstill for this long is an overload, s.
+/// Full drive at standstill for this long counts as an overload, s.
 const OVERLOAD_S: f64 = 1.0;
-/// Steps of the motor made up for at most in one go.
+/// Maximum number of motor steps made up at a time.
 const CATCH_UP_STEPS: usize = 200;
-/// A reading that no servo can make, for the fault of impossible numbers.
+/// An impossible reading, for the corresponding fault.
 const IMPOSSIBLE_TICKS: i64 = 0x7FFF_FFFF;
 
 impl Servo {
@@ -31,7 +31,6 @@ impl Servo {
         table::TICKS_AT_ZERO + sign * (self.motor.ticks() - table::TICKS_AT_ZERO) + homing
     }
 
-    /// The shaft, for the world.
     pub(in super::super) fn shaft(&self) -> Shaft {
         Shaft {
             angle_rad: self.motor.angle_rad,
@@ -40,7 +39,7 @@ impl Servo {
         }
     }
 
-    /// Lets the motor move until `now_s`, and measures.
+    /// Moves the motor until `now_s`, and measures.
     pub(in super::super) fn advance(&mut self, now_s: f64, around: &Surroundings) {
         self.watch(now_s);
         let begin_s = *self.stepped_s.get_or_insert(now_s);
@@ -64,7 +63,7 @@ impl Servo {
         let active = self.torque_on() && (1..=127).contains(&units);
         if active && now_s - self.heard_s > units as f64 * table::WATCHDOG_UNIT_S {
             self.set(table::BUS_WATCHDOG, table::WATCHDOG_EXPIRED.into());
-            // It stops where it is, and quickly.
+            // Stops quickly at the current position.
             self.motor.restart();
             self.set(table::PROFILE_ACCELERATION, 0);
             self.set(table::PROFILE_VELOCITY, 0);
@@ -100,7 +99,7 @@ impl Servo {
         }
     }
 
-    /// Overload: all the drive or all the current, and no movement, for too long.
+    /// Detects an overload: full drive or full current without movement for too long.
     fn guard(&mut self, drive: &Drive) {
         let all_pwm = self.motor.pwm.abs() >= 0.95 * drive.pwm_limit && drive.pwm_limit > 0.0;
         let all_current = drive.mode != 5 && self.motor.current_a.abs() >= 0.95 * drive.current_limit_a;

@@ -1,4 +1,4 @@
-//! Every emulated fault, in a time of its own: which loss or counter, how soon, and the way back.
+//! Every emulated fault, in virtual time: the resulting loss or counter, its delay, and the recovery.
 
 use nima_devices::{
     Device as _, Loss, Standing,
@@ -18,7 +18,7 @@ fn running() -> (Bench, Driver<MemoryBytes>) {
     (bench, driver)
 }
 
-/// Polls at 1 kHz until it is lost; which loss, and how long after the newest good reading.
+/// Polls at 1 kHz until it is lost; returns the loss, and the time since the last good reading.
 fn until_lost(bench: &Bench, driver: &mut Driver<MemoryBytes>) -> Option<(Loss, f64)> {
     let begin_s = bench.now_s();
     while bench.now_s() - begin_s < 1.0 {
@@ -65,7 +65,7 @@ fn faults_that_spare_some_answers_are_counted() {
     let (bench, mut driver) = running();
     bench.fault(EmulatedFault::Loss);
     bench.run(&mut driver, 0.05);
-    // Two in a row may be missing, three make it silent; either way they are counted.
+    // Two missing in a row are allowed, three count as silence; either way they are counted.
     until_lost(&bench, &mut driver);
     assert!(driver.health().lost > 0, "{:?}", driver.health());
 
@@ -115,7 +115,7 @@ fn a_bus_that_falls_quiet_stops_the_servos_and_that_is_told() {
     assert!((later_rad - stopped_rad).abs() < 0.05 && later_rad < 0.9, "{stopped_rad} {later_rad}");
     let (loss, _) = until_lost(&bench, &mut driver).unwrap();
     let Loss::Device { code } = loss else { panic!("{loss:?}") };
-    assert_eq!(Fault::of_code(code).error.to_string(), "its bus watchdog expired");
+    assert_eq!(Fault::of_code(code).error.to_string(), "the bus watchdog expired");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Opening: what is set in the servos, and every cause why it cannot be.
+//! Opening: the settings written to the servos, and every cause of failure.
 
 use nima_devices::{
     Device as _, Loss, Standing, Trouble,
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::emulators::EmulatedFault;
 
-/// Reads registers of a servo behind the driver's back.
+/// Reads registers of a servo, bypassing the driver.
 fn peek(bench: &Bench, id: u8, address: u16, count: u16) -> Vec<u8> {
     let mut out = Outgoing::new(64);
     Instruction::Read { address, count }.encode(id, &mut out);
@@ -159,7 +159,7 @@ fn a_servo_that_shut_down_opens_after_a_restart_by_command_only() {
     assert!(bench.run(&mut driver, 0.1).is_some() && !bench.reboots.is_any());
 }
 
-/// A line on which somebody else switches the torque of servo 1 on again and again.
+/// A connection on which another program keeps switching on the torque of servo 1.
 struct Meddler(MemoryBytes);
 
 impl Bytes for Meddler {

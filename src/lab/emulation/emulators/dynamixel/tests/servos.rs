@@ -1,4 +1,4 @@
-//! What emulated servos do with what they are told: their rules, their motion, and the driver's commands.
+//! Emulated servos: their rules, their motion, and the driver's commands.
 
 use nima_devices::{
     Device as _, Loss, Standing,
@@ -29,7 +29,7 @@ impl Client {
         Self { emulator: Bus::new(&settings, Some(Box::new(still))).unwrap(), now_s: 0.0 }
     }
 
-    /// Everything that comes back within 10 ms: id, error, parameters.
+    /// Returns everything received within 10 ms: id, error, parameters.
     fn ask(&mut self, id: u8, instruction: &I<'_>) -> Vec<(u8, u8, Vec<u8>)> {
         let mut out = Outgoing::new(512);
         instruction.encode(id, &mut out);
@@ -90,7 +90,7 @@ fn registers_keep_their_rules() {
 #[test]
 fn indirect_data_stands_for_other_registers() {
     let mut client = Client::new();
-    // Bytes 1 to 4 stand for the goal position, byte 5 for the light.
+    // Bytes 1 to 4 refer to the goal position, byte 5 to the LED.
     for (k, target) in [116_u16, 117, 118, 119, 65].into_iter().enumerate() {
         assert_eq!(client.write(168 + 2 * k as u16, &target.to_le_bytes()), 0);
     }
@@ -124,7 +124,7 @@ fn instructions_for_several_do_what_they_say() {
     assert!(client.ask(BROADCAST, &I::Action).is_empty());
     assert_eq!((client.read(69, 1), client.read(65, 1)), (0, 1));
     assert_eq!(client.ask(1, &I::Action)[0].1, 1, "nothing is registered");
-    // The shadow id is obeyed silently.
+    // The shadow id is executed silently.
     assert_eq!(client.write(12, &[77]), 0);
     assert!(client.ask(77, &I::Write { address: 65, data: &[0] }).is_empty());
     assert_eq!(client.read(65, 1), 0);
@@ -183,7 +183,7 @@ fn the_watchdog_stops_a_servo_and_locks_its_goals() {
     assert_eq!(client.write(104, &100_i32.to_le_bytes()), 0);
 }
 
-/// Time to be within 1 % of a move of 1000 ticks for good, and the largest overshoot, ticks.
+/// Settling time within 1 % of a move of 1000 ticks, and the maximum overshoot, ticks.
 fn response(registers: &[(u16, i32, usize)]) -> (f64, f64) {
     let mut client = Client::new();
     for (address, value, bytes) in registers {
@@ -302,7 +302,7 @@ fn a_lost_torque_command_is_given_again() {
     let mut driver = bench.open().unwrap();
     bench.run(&mut driver, 0.1);
     driver.set_torque(true);
-    // What is sent now never arrives.
+    // Data sent now never arrive.
     let begin_s = bench.now_s();
     while !driver.is_torque_on() {
         bench.poll(&mut driver, 1e-3);

@@ -17,7 +17,7 @@ use crate::emulators::{EmulatedFault, Serving};
 fn serving(settings_of: &Emulated) -> (Serving, Settings) {
     let serving = settings_of.with(None).unwrap().serve().unwrap();
     let mut settings = Settings { port: serving.endpoint.clone(), baud: settings_of.baud, ..settings() };
-    // Other programs of this machine may keep either side waiting.
+    // Other programs of this machine may delay either side.
     settings.silence_s = 0.5;
     (serving, settings)
 }
@@ -41,12 +41,12 @@ fn it_delivers_over_the_terminal_without_a_loss() {
         let health = driver.health();
         assert!(health.readings > 50, "{health:?}");
         assert_eq!((health.damaged, health.refused, health.skipped_bytes), (0, 0, 0));
-        // A pause of this machine can make an answer late; more than a few are ours.
+        // A pause of this machine may delay an answer; more than a few are our fault.
         assert!(health.lost + health.out_of_order <= 4, "{health:?}");
     });
 }
 
-/// Not a test of anything but this machine: the figures that the documentation gives.
+/// Measures only this machine: the results quoted in the documentation.
 #[test]
 #[ignore = "prints rates, takes 20 s: `./dev figures` runs it"]
 fn measure_rate_and_losses() {

@@ -1,4 +1,4 @@
-//! A driver and emulated servos in one thread, in a time of their own.
+//! A driver and emulated servos in one thread, in virtual time.
 
 use std::{cell::RefCell, rc::Rc};
 
@@ -64,7 +64,7 @@ impl World {
     }
 }
 
-/// Time that passes for driver and servos alike.
+/// The common time of driver and servos.
 #[derive(Clone)]
 pub(super) struct Bench {
     pub(super) world: Rc<RefCell<World>>,
@@ -93,7 +93,7 @@ impl Bench {
         Self::new(Bus::new(&emulated(), None).unwrap(), settings())
     }
 
-    /// Plugs a new cable in and opens.
+    /// Plugs in a new cable and opens the driver.
     pub(super) fn open(&mut self) -> Result<Driver<MemoryBytes>, Trouble> {
         let [ours, theirs] = MemoryBytes::pair();
         self.world.borrow_mut().end = theirs;
@@ -106,14 +106,14 @@ impl Bench {
         self.world.borrow_mut().fault = fault;
     }
 
-    /// One poll of the driver after `step_s`.
+    /// Polls the driver once after `step_s`.
     pub(super) fn poll(&self, driver: &mut Driver<MemoryBytes>, step_s: f64) -> Option<Stamped<ServoReading>> {
         self.world.borrow_mut().pass(step_s);
         let now_s = self.now_s();
         driver.poll(now_s)
     }
 
-    /// Polls at 1 kHz for this long; the last reading.
+    /// Polls at 1 kHz for this long; returns the last reading.
     pub(super) fn run(&self, driver: &mut Driver<MemoryBytes>, length_s: f64) -> Option<ServoReading> {
         let count = (length_s * 1e3).round() as usize;
         (0..count).filter_map(|_| self.poll(driver, 1e-3)).last().map(|reading| reading.value)

@@ -1,4 +1,4 @@
-//! The emulated endoscope as a network camera, and third-party programs in place of either end.
+//! The emulated endoscope as a network camera, with third-party programs at either end.
 
 use std::{
     path::Path,
@@ -13,7 +13,7 @@ use nima_testing::{real_time, unjudged};
 use super::{Feeding, SQUARE_PX, serve, time_us, until};
 use crate::emulators::{EmulatedFault, Serving};
 
-/// The same emulator over RTSP.
+/// Returns the RTSP address of the same emulator.
 fn rtsp(serving: &Serving) -> String {
     format!("rtsp{}stream", serving.endpoint.strip_prefix("http").unwrap())
 }
@@ -84,7 +84,7 @@ fn a_wrong_path_is_told() {
     until(&feed, "404", |look| matches!(look.standing, Standing::Lost(Trouble::Refused { status: 404, .. })));
 }
 
-/// A feed of this address becomes live with pictures of this size.
+/// Waits until a feed of this address is live with images of this size.
 fn plays(address: &str, size_px: [usize; 2]) {
     let feed = Feed::start(address.parse().unwrap(), Some(size_px), || {}).unwrap();
     let look = until(&feed, address, is_live);
@@ -92,7 +92,7 @@ fn plays(address: &str, size_px: [usize; 2]) {
 }
 
 #[test]
-#[ignore = "beside ffmpeg, whose program NIMA_FFMPEG names"]
+#[ignore = "needs ffmpeg: set NIMA_FFMPEG to its program"]
 fn ffmpeg_plays_our_streams_and_we_play_those_of_ffmpeg() {
     let Ok(ffmpeg) = std::env::var("NIMA_FFMPEG") else {
         unjudged::left_out("NIMA_FFMPEG names no program");
@@ -142,7 +142,7 @@ fn ffmpeg_plays_our_streams_and_we_play_those_of_ffmpeg() {
     http(&ffmpeg, &test);
 }
 
-/// ffmpeg in place of a camera with motion JPEG over HTTP.
+/// ffmpeg as a camera with motion JPEG over HTTP.
 fn http(ffmpeg: &str, test: &[&str]) {
     let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let address = format!("http://127.0.0.1:{port}/stream");

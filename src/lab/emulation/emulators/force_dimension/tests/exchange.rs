@@ -1,4 +1,4 @@
-//! The exchange's datagrams: round trips, and nothing but whole ones is taken.
+//! Round trips of the exchange's datagrams; only intact ones are accepted.
 
 use drd::wire::{FRESH, Order, REPLY_BYTES, REQUEST_BYTES, Reply, Request, SATURATED};
 
@@ -40,7 +40,7 @@ fn the_bytes_of_a_request_are_those_of_the_contract() {
     assert_eq!(&bytes[..24], b"NIMQ\x02\0\0\0\0\0\0\0\x03\0\0\0\x03\0\0\0\x04\0\0\0");
     assert_eq!(&bytes[24..32], &1.0_f64.to_le_bytes());
     assert_eq!(&bytes[48..56], &0.25_f64.to_le_bytes());
-    // FNV-1a over all before it.
+    // FNV-1a over all preceding bytes.
     let mut sum = 2_166_136_261_u64;
     for byte in &bytes[..56] {
         sum = ((sum ^ u64::from(*byte)) * 16_777_619) & 0xffff_ffff;
@@ -59,7 +59,7 @@ fn datagrams_come_back_as_they_went_in() {
     }
 }
 
-/// Random and mutated datagrams; the number of those that were taken although they had been changed.
+/// Random and mutated datagrams; returns how many were accepted although they had been changed.
 fn fuzz(rounds: u32, seed: u64) -> u32 {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut wrong = 0;
@@ -89,7 +89,7 @@ fn fuzz(rounds: u32, seed: u64) -> u32 {
 
 #[test]
 fn damaged_datagrams_are_refused() {
-    // A change of the same byte back and forth may leave it whole, very rarely.
+    // Very rarely, the same byte is changed back and forth and the datagram is intact.
     assert!(fuzz(200_000, 2) < 20);
 }
 

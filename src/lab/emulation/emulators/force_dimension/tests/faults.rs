@@ -1,4 +1,4 @@
-//! Every emulated fault: what the driver makes of it, and that it comes back through its slot without a restart.
+//! Every emulated fault: the driver's reaction, and its recovery in its slot without a restart.
 
 use nima_devices::{Health, Loss, Slot};
 use nima_testing::real_time::judged;
@@ -6,12 +6,12 @@ use nima_testing::real_time::judged;
 use super::*;
 use crate::emulators::EmulatedFault;
 
-/// What a fault leads to.
+/// Effect of a fault.
 enum Expected {
     Lost(Loss),
-    /// Goes on; calls that were not answered are counted as lost.
+    /// Continues; unanswered calls are counted as lost.
     Lossy,
-    /// Goes on; answers that make no sense are counted as damaged.
+    /// Continues; invalid answers are counted as damaged.
     Noisy,
 }
 
@@ -39,7 +39,7 @@ fn wait(slot: &mut Slot<Driver>, good: impl Fn(&Slot<Driver>, bool) -> bool) -> 
     false
 }
 
-/// Times that a fault is tried: without real-time scheduling a busy machine makes a device silent by itself now and then.
+/// Attempts per fault: without real-time scheduling, a busy machine occasionally makes a device silent by itself.
 const ATTEMPTS: u32 = 6;
 
 fn goes_through(faults: &[EmulatedFault]) {
@@ -59,7 +59,7 @@ fn goes_through(faults: &[EmulatedFault]) {
     });
 }
 
-/// Sets one fault on a handle that pushes; whether it shows as expected.
+/// Sets one fault on a handle that is pushing; returns whether the effect is as expected.
 fn shows(
     slot: &mut Slot<Driver>,
     hand: &Hand,

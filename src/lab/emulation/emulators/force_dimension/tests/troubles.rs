@@ -1,4 +1,4 @@
-//! What can go wrong on the way to a device, and on the way out of the program.
+//! Everything that can go wrong when connecting to a device, and when the program exits.
 
 use std::process::{Command, Stdio};
 
@@ -24,7 +24,7 @@ fn a_real_handle_gets_no_stand_in_even_where_its_file_is_named_or_found() {
     judged(|| {
         let told = trouble(&Settings { library: Some(library()), ..Settings::default() });
         assert!(matches!(&told, Trouble::SdkUnusable { reason, .. } if reason.contains("emulates")), "{told:?}");
-        // Cargo has the system search its own folders, where the stand-in lies under the library's name.
+        // Cargo makes the system search its own folders, which contain the stub under the library's name.
         match open(&Settings::default()) {
             Err(Trouble::SdkMissing { searched, .. }) => assert!(searched.contains("drd"), "{searched}"),
             // A machine with the real SDK and no device.
@@ -43,7 +43,7 @@ fn a_library_that_does_not_fit_is_told_with_the_reason() {
     assert!(matches!(&told, Trouble::SdkUnusable { .. }), "{told:?}");
     #[cfg(target_os = "linux")]
     {
-        // Any other library has none of the symbols.
+        // Any other library lacks the symbols.
         let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
         let libc = maps.lines().filter_map(|line| line.split_whitespace().last()).find(|path| path.contains("libc.so"));
         let settings = Settings { library: libc.map(Into::into), ..Settings::default() };
@@ -65,7 +65,7 @@ fn devices_that_are_absent_taken_or_others_are_told_apart() {
         let no_device = Settings { emulator: Some(nobody), library: Some(library()), ..settings.clone() };
         assert_eq!(trouble(&no_device), Trouble::Absent { place: "omega.7 (0 attached)".to_owned() });
         let first = open(&settings).unwrap();
-        // Another copy of the library is another program to the device.
+        // To the device, another copy of the library is another program.
         let other = Settings { library: Some(library()), serial: Some(7), ..settings.clone() };
         assert_eq!(trouble(&other), Trouble::Busy { place: "omega.7 with serial number 7".to_owned() });
         drop(first);
@@ -86,10 +86,10 @@ fn devices_that_are_not_ready_or_broken_are_told_apart() {
         serving.faults.set(EmulatedFault::NotANumber);
         assert!(matches!(trouble(&settings), Trouble::DeviceFault { .. }));
         serving.faults.set(EmulatedFault::Silence);
-        // The emulator looks at its faults once in a while.
+        // The emulator checks its faults at intervals.
         std::thread::sleep(Duration::from_millis(20));
         let told = trouble(&settings);
-        assert!(matches!(told, Trouble::Absent { .. }), "who does not answer is not attached: {told:?}");
+        assert!(matches!(told, Trouble::Absent { .. }), "a device that does not answer is not attached: {told:?}");
     });
 }
 
@@ -107,7 +107,7 @@ fn impossible_settings_are_refused() {
     assert!(toml::from_str::<Settings>("wachdog_ms = 3.0").is_err());
 }
 
-/// This test's program again, doing only one thing.
+/// Runs this test's program again with only one task.
 fn child(test: &str, settings: &Settings, more: (&str, &str)) -> std::process::Child {
     Command::new(std::env::current_exe().unwrap())
         .args(["--exact", &format!("emulators::force_dimension::tests::troubles::{test}"), "--ignored", "--nocapture"])
@@ -125,7 +125,7 @@ fn of_parent() -> Settings {
     Settings { library: std::env::var_os("NIMA_TEST_LIBRARY").map(Into::into), emulator, ..Settings::default() }
 }
 
-/// As a program ends that returns from `main`: on Windows std's own `exit` ends all threads at once.
+/// Exits like a program that returns from `main`: on Windows std's own `exit` ends all threads at once.
 #[cfg_attr(windows, expect(unsafe_code, reason = "of C's library"))]
 fn exit() -> ! {
     #[cfg(windows)]
@@ -143,7 +143,7 @@ fn exit() -> ! {
 #[test]
 #[ignore = "started by another test"]
 fn pushes_and_leaves() {
-    // A busy machine lets the handle answer too late now and then.
+    // On a busy machine the handle occasionally answers too late.
     let mut driver = (0..20).find_map(|_| open(&of_parent()).ok()).unwrap();
     turn_on(&mut driver);
     let begin = Instant::now();

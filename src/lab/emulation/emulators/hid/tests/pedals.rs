@@ -1,4 +1,4 @@
-//! A foot pedal over its emulated wire.
+//! A foot pedal over its emulated interface.
 
 use super::*;
 
@@ -56,7 +56,7 @@ fn a_pressed_pedal_that_is_unplugged_or_broken_is_released_and_stays_so_until_it
             );
             serving.faults.set(EmulatedFault::None);
             assert!(until_slot(&mut slot, begin, |health, reading| {
-                assert_eq!(held.update(reading, health).pressed, 0, "it must be pressed anew");
+                assert_eq!(held.update(reading, health).pressed, 0, "it must be pressed again");
                 health.standing == Standing::Connected
             }));
             foot.store(0, Ordering::Release);

@@ -1,4 +1,4 @@
-//! Motions that the base makes by itself, and what it tells of them.
+//! The base's own motions, and their notifications.
 
 use std::time::Instant;
 

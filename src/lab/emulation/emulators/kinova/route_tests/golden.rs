@@ -189,7 +189,7 @@ fn requests_of_the_device_route_are_answered_byte_for_byte() {
             let mut told = Vec::new();
             encode_written(&header, &payload, &mut told);
             assert_eq!(told, bytes(answer), "{name}: {header:?}");
-            // The other way: this crate writes the same request.
+            // The other direction: this crate writes the same request.
             let whole = bytes(request);
             let frame = Frame::decode(&whole).unwrap();
             let mut written = Vec::new();

@@ -14,6 +14,7 @@ use std::{
 };
 
 use crossbeam_channel::{Receiver, Sender, bounded};
+use tracing::{info, warn};
 
 use super::{Device, Health, Identity, Stamped, Standing, Trouble, health::Outages};
 
@@ -54,7 +55,7 @@ impl<D: Device + 'static> Slot<D> {
         let (lost, take) = bounded(1);
         let shared = Shared::default();
         shared.wanted.store(true, Ordering::Release);
-        let keeper = Keeper { give, take, shared: shared.clone() };
+        let keeper = Keeper { name: name.to_owned(), give, take, shared: shared.clone() };
         let thread = Builder::new().name(format!("open {name}")).spawn(move || keeper.run(open))?;
         let health = Health::opening();
         Ok(Self { device: None, health, outages: Outages::default(), opened, lost, shared, thread: Some(thread) })
@@ -171,6 +172,7 @@ impl SlotView {
 }
 
 struct Keeper<D> {
+    name: String,
     give: Sender<D>,
     take: Receiver<D>,
     shared: Shared,
@@ -179,8 +181,10 @@ struct Keeper<D> {
 impl<D: Device> Keeper<D> {
     fn run(self, mut open: impl FnMut() -> Result<D, Trouble>) {
         let mut out = false;
+        let mut told = None;
         while !self.shared.stop.load(Ordering::Acquire) {
             if let Ok(lost) = self.take.try_recv() {
+                warn!(device = self.name, standing = ?lost.health().standing, "closed");
                 drop(lost);
                 out = false;
                 self.nap(NAP);
@@ -191,6 +195,8 @@ impl<D: Device> Keeper<D> {
             }
             match open() {
                 Ok(device) => {
+                    info!(device = self.name, "open");
+                    told = None;
                     self.tell(|report| {
                         report.identity = Some(device.identity().clone());
                         report.trouble = None;
@@ -199,6 +205,11 @@ impl<D: Device> Keeper<D> {
                     out = self.give.try_send(device).is_ok();
                 }
                 Err(trouble) => {
+                    // The same trouble, twice a second, is one line.
+                    if told.as_ref() != Some(&trouble) {
+                        warn!(device = self.name, %trouble, "not open");
+                        told = Some(trouble.clone());
+                    }
                     self.tell(|report| report.trouble = Some(trouble));
                     self.nap(RETRY);
                 }

@@ -2,6 +2,8 @@
 
 use std::{fmt, path::PathBuf, str::FromStr};
 
+use percent_encoding::percent_decode_str;
+
 /// Maximum length of an address.
 const LENGTH_MOST: usize = 2000;
 
@@ -9,21 +11,9 @@ const LENGTH_MOST: usize = 2000;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// Motion JPEG over HTTP.
-    Http {
-        /// Name or IP address.
-        host: String,
-        port: u16,
-        /// With its query, beginning with a slash.
-        path: String,
-    },
+    Http(Endpoint),
     /// H.264 over RTSP.
-    Rtsp {
-        /// Name or IP address.
-        host: String,
-        port: u16,
-        /// With its query, beginning with a slash.
-        path: String,
-    },
+    Rtsp(Endpoint),
     /// A camera or capture card of this computer.
     Camera {
         /// Device file.
@@ -33,6 +23,34 @@ pub enum Address {
     },
     /// A `.mjpeg` or `.h264` file, a folder of JPEGs, or one JPEG.
     File(PathBuf),
+}
+
+/// A camera on the network.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Endpoint {
+    /// Name or number.
+    pub host: String,
+    /// TCP port.
+    pub port: u16,
+    /// Requested path with its query, beginning with a slash.
+    pub path: String,
+    /// User and password, where the address has them.
+    pub login: Option<Login>,
+}
+
+/// A user and a password. `Debug` hides the password.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Login {
+    /// Name of the user.
+    pub user: String,
+    /// The password; empty if the address has none.
+    pub password: String,
+}
+
+impl fmt::Debug for Login {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Login").field("user", &self.user).finish_non_exhaustive()
+    }
 }
 
 /// Settings of a camera of this computer. A setting that is omitted stays as the camera has it.
@@ -79,8 +97,9 @@ impl FromStr for Address {
     type Err = AddressError;
 
     fn from_str(text: &str) -> Result<Self, AddressError> {
-        // Keeps a message on one short line.
-        let shown = || text.chars().take(80).filter(|c| !c.is_control()).collect();
+        // A message is one short line, and never shows a password.
+        let public = text.rsplit_once('@').map_or(text, |(_, place)| place);
+        let shown = || public.chars().take(80).filter(|c| !c.is_control()).collect();
         let wrong = |why| Err(AddressError { address: shown(), why });
         if text.is_empty() {
             return wrong("give http://HOST:PORT/PATH, rtsp://HOST/PATH, /dev/video0, or the path of a file or folder");
@@ -96,8 +115,8 @@ impl FromStr for Address {
         }
         let Some((scheme, rest)) = text.split_once("://") else { return Ok(Self::File(text.into())) };
         match scheme.to_ascii_lowercase().as_str() {
-            "http" => place(rest, 80).map(|(host, port, path)| Self::Http { host, port, path }).or_else(wrong),
-            "rtsp" => place(rest, 554).map(|(host, port, path)| Self::Rtsp { host, port, path }).or_else(wrong),
+            "http" => endpoint(rest, 80).map(Self::Http).or_else(wrong),
+            "rtsp" => endpoint(rest, 554).map(Self::Rtsp).or_else(wrong),
             "file" => Ok(Self::File(rest.into())),
             _ => wrong("only http://, rtsp://, cameras (/dev/video0) and files are supported"),
         }
@@ -132,12 +151,13 @@ fn camera(text: &str) -> Result<Address, &'static str> {
     Ok(Address::Camera { path: path.into(), capture })
 }
 
-/// Parses host, port and path.
-fn place(rest: &str, usual_port: u16) -> Result<(String, u16, String), &'static str> {
+/// `USER:PASSWORD@HOST:PORT/PATH`, of which only the host is required.
+fn endpoint(rest: &str, usual_port: u16) -> Result<Endpoint, &'static str> {
     let (authority, path) = rest.find(['/', '?']).map_or((rest, "/"), |at| rest.split_at(at));
-    if authority.contains('@') {
-        return Err("a user or password is not supported");
-    }
+    let (login, authority) = match authority.rsplit_once('@') {
+        Some((login, authority)) => (Some(self::login(login)?), authority),
+        None => (None, authority),
+    };
     let bad_port = "the port must be 1 to 65535";
     let (host, port) = match authority.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
         Some((host, port)) => (host, port.strip_prefix(':')),
@@ -152,18 +172,35 @@ fn place(rest: &str, usual_port: u16) -> Result<(String, u16, String), &'static 
         return Err("give HOST:PORT/PATH, without blanks");
     }
     let path = if path.starts_with('/') { path.to_owned() } else { format!("/{path}") };
-    Ok((host.to_owned(), port, path))
+    Ok(Endpoint { host: host.to_owned(), port, path, login })
 }
 
+/// `USER:PASSWORD`, with percent signs for what an address cannot contain.
+fn login(text: &str) -> Result<Login, &'static str> {
+    let (user, password) = text.split_once(':').unwrap_or((text, ""));
+    let decoded = |text: &str| {
+        let text = percent_decode_str(text).decode_utf8().ok()?;
+        (!text.chars().any(char::is_control)).then(|| text.into_owned())
+    };
+    let login = decoded(user).zip(decoded(password));
+    let (user, password) = login.ok_or("the user or the password contains characters that cannot be sent")?;
+    Ok(Login { user, password })
+}
+
+impl Endpoint {
+    /// Host and port, as in a request and in messages: `HOST:PORT`.
+    pub(crate) fn place(&self) -> String {
+        let (open, close) = if self.host.contains(':') { ("[", "]") } else { ("", "") };
+        format!("{open}{}{close}:{}", self.host, self.port)
+    }
+}
+
+/// Without user and password.
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let at = |f: &mut fmt::Formatter<'_>, scheme: &str, host: &str, port: u16, path: &str| {
-            let (open, close) = if host.contains(':') { ("[", "]") } else { ("", "") };
-            write!(f, "{scheme}://{open}{host}{close}:{port}{path}")
-        };
         match self {
-            Self::Http { host, port, path } => at(f, "http", host, *port, path),
-            Self::Rtsp { host, port, path } => at(f, "rtsp", host, *port, path),
+            Self::Http(endpoint) => write!(f, "http://{}{}", endpoint.place(), endpoint.path),
+            Self::Rtsp(endpoint) => write!(f, "rtsp://{}{}", endpoint.place(), endpoint.path),
             Self::Camera { path, capture: Capture { size_px, rate_hz, pixels } } => {
                 write!(f, "v4l2:{}", path.display())?;
                 let mut sign = '?';
@@ -194,9 +231,28 @@ mod tests {
 
     fn http_of(text: &str) -> (String, u16, String) {
         match text.parse().unwrap() {
-            Address::Http { host, port, path } => (host, port, path),
+            Address::Http(Endpoint { host, port, path, login: None }) => (host, port, path),
             other => panic!("{other}"),
         }
+    }
+
+    #[test]
+    fn a_password_is_read_and_never_shown() {
+        let login_of = |text: &str| match text.parse().unwrap() {
+            address @ (Address::Http(_) | Address::Rtsp(_)) => {
+                let shown = format!("{address} {address:?}");
+                assert!(!shown.contains("secret") && shown.contains("://cam:81/"), "{shown}");
+                let (Address::Http(endpoint) | Address::Rtsp(endpoint)) = address else { unreachable!() };
+                endpoint.login.map(|login| [login.user, login.password])
+            }
+            other => panic!("{other}"),
+        };
+        let expected = |user: &str, password: &str| Some([user.to_owned(), password.to_owned()]);
+        assert_eq!(login_of("http://eva:secret:a@b@cam:81/"), expected("eva", "secret:a@b"));
+        assert_eq!(login_of("rtsp://eva:secret%2F%3F@cam:81/"), expected("eva", "secret/?"));
+        assert_eq!(login_of("http://eva@cam:81"), expected("eva", ""));
+        let refused = "http://eva:secret@cam:0/".parse::<Address>().unwrap_err().to_string();
+        assert!(!refused.contains("secret"), "{refused}");
     }
 
     #[test]
@@ -223,7 +279,8 @@ mod tests {
             ("/dev/video0?format=rgb", "mjpeg, yuyv or nv12"),
             ("/dev/video0?brightness=3", "size, rate and format"),
             ("https://cam/", "only http"),
-            ("http://user:secret@cam/", "password"),
+            ("http://user:secret%0A@cam/", "password"),
+            ("http://user:secret@", "HOST"),
             ("http://cam:0/", "1 to 65535"),
             ("http://cam:70000/", "1 to 65535"),
             ("http:///stream", "HOST"),
@@ -255,9 +312,13 @@ mod tests {
         fn any_text_is_an_address_or_an_error_and_an_address_reads_as_itself(
             text in "(http://|rtsp://|v4l2:/dev/|/dev/v(.size=[0-9x]{1,9}&rate=[0-9]{1,3}.format=nv12)?)?.{0,40}",
         ) {
-            if let Ok(address) = text.parse::<Address>() && !matches!(address, Address::File(_)) {
-                prop_assert_eq!(address.to_string().parse::<Address>(), Ok(address));
+            let Ok(mut address) = text.parse::<Address>() else { return Ok(()) };
+            match &mut address {
+                Address::File(_) => return Ok(()),
+                Address::Http(endpoint) | Address::Rtsp(endpoint) => endpoint.login = None,
+                Address::Camera { .. } => {}
             }
+            prop_assert_eq!(address.to_string().parse::<Address>(), Ok(address));
         }
     }
 }

@@ -7,6 +7,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use tracing::warn;
+
 use crate::{
     Address, Compressed, Format, Picture, Reel, Standing, Tone, Trouble, h264,
     judge::Watch,
@@ -204,6 +206,10 @@ impl Shared {
             let was_good = {
                 let mut state = locked(&self.state);
                 let was_good = state.trouble.is_none() && state.opened;
+                // The same trouble, twice a second, is one line.
+                if state.trouble.as_ref() != Some(&trouble) {
+                    warn!(%trouble, "no picture");
+                }
                 state.trouble = Some(trouble);
                 was_good
             };

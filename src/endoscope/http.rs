@@ -1,7 +1,7 @@
 //! Motion JPEG over HTTP/1.1, as sent by cameras: an endless response whose parts are images.
 //!
-//! Our own client, because little is needed: one request, no redirection, no password, no encryption. Everything that
-//! the other end determines is limited: the length of heads and images, and their duration.
+//! A client of its own, because it needs so little: one request, or two where the camera asks for a password, no redirection, no encryption.
+//! Everything that the other end decides is limited: the length of heads and pictures, and how long they take.
 
 mod answer;
 mod chunked;
@@ -9,13 +9,15 @@ mod head;
 
 use std::{
     collections::VecDeque,
-    io::{ErrorKind, Read as _, Write as _},
+    io::{self, ErrorKind, Read as _, Write as _},
     net::{TcpStream, ToSocketAddrs as _},
     time::{Duration, Instant},
 };
 
+use http_auth::{PasswordClient, PasswordParams};
+
 use self::answer::{Answer, Part, Wrong};
-use crate::{Compressed, Source, Trouble};
+use crate::{Compressed, Endpoint, Source, Trouble};
 
 /// Time for connecting to one address of the camera, and maximum number of addresses tried.
 const CONNECT: Duration = Duration::from_millis(500);
@@ -30,8 +32,10 @@ const READ_BYTES: usize = 64 << 10;
 
 /// A camera that is sending.
 pub(crate) struct Http {
+    endpoint: Endpoint,
     place: String,
     stream: TcpStream,
+    has_logged_in: bool,
     answer: Answer,
     parts: VecDeque<Part>,
     buffer: Vec<u8>,
@@ -42,29 +46,47 @@ pub(crate) struct Http {
 }
 
 impl Http {
-    pub(crate) fn open(host: &str, port: u16, path: &str) -> Result<Self, Trouble> {
-        let place = format!("{host}:{port}");
-        let mut stream = connect(host, port, &place)?;
-        let told = |error: std::io::Error| Trouble::of_network(&place, &error);
-        stream.set_nodelay(true).map_err(told)?;
-        stream.set_write_timeout(Some(CONNECT)).map_err(told)?;
-        stream.set_read_timeout(Some(PATIENCE)).map_err(told)?;
-        let name = if host.contains(':') { format!("[{host}]:{port}") } else { place.clone() };
-        let request = format!(
-            "GET {path} HTTP/1.1\r\nHost: {name}\r\nUser-Agent: nima\r\nAccept: multipart/x-mixed-replace, image/jpeg\r\nConnection: close\r\n\r\n"
-        );
-        stream.write_all(request.as_bytes()).map_err(told)?;
+    pub(crate) fn open(endpoint: &Endpoint) -> Result<Self, Trouble> {
+        let stream = ask(endpoint, None)?;
         let now = Instant::now();
-        let answer = Answer::default();
-        let parts = VecDeque::new();
         let buffer = vec![0; READ_BYTES];
-        Ok(Self { place, stream, answer, parts, buffer, heard: now, whole: now, ended: false })
+        Ok(Self {
+            endpoint: endpoint.clone(),
+            place: endpoint.place(),
+            stream,
+            has_logged_in: false,
+            answer: Answer::default(),
+            parts: VecDeque::new(),
+            buffer,
+            heard: now,
+            whole: now,
+            ended: false,
+        })
+    }
+
+    /// Asks again with user and password, once; false where the address has none, or the camera wants them in a way that is not known.
+    fn log_in(&mut self, challenges: &[String]) -> Result<bool, Trouble> {
+        let Some(login) = self.endpoint.login.as_ref().filter(|_| !self.has_logged_in) else { return Ok(false) };
+        let Ok(mut client) = PasswordClient::try_from(challenges.join(", ").as_str()) else { return Ok(false) };
+        let parameters = PasswordParams {
+            username: &login.user,
+            password: &login.password,
+            uri: &self.endpoint.path,
+            method: "GET",
+            body: None,
+        };
+        let Ok(authorization) = client.respond(&parameters) else { return Ok(false) };
+        self.stream = ask(&self.endpoint, Some(&authorization))?;
+        self.answer = Answer::default();
+        self.has_logged_in = true;
+        Ok(true)
     }
 
     fn trouble(&self, wrong: Wrong) -> Trouble {
         let place = self.place.clone();
         match wrong {
             Wrong::Status(status) => Trouble::Refused { place, status },
+            Wrong::Locked(_) => Trouble::Refused { place, status: 401 },
             Wrong::Format(found) => Trouble::OtherFormat { place, found, wanted: "motion JPEG" },
             Wrong::Unreadable(reason) => Trouble::Unreadable { place, reason: reason.to_owned() },
             Wrong::Ended => Trouble::Closed { place },
@@ -78,9 +100,11 @@ impl Http {
             Ok(count) => {
                 self.heard = Instant::now();
                 // Images that were complete before a failure are still shown.
-                let taken = self.answer.take(&self.buffer[..count], &mut self.parts);
-                taken.map_err(|wrong| self.trouble(wrong))?;
-                Ok(true)
+                match self.answer.take(&self.buffer[..count], &mut self.parts) {
+                    Ok(()) => Ok(true),
+                    Err(Wrong::Locked(challenges)) if self.log_in(&challenges)? => Ok(true),
+                    Err(wrong) => Err(self.trouble(wrong)),
+                }
             }
             Err(error)
                 if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) =>
@@ -92,14 +116,33 @@ impl Http {
     }
 }
 
+/// Connects to the camera and requests its pictures.
+fn ask(endpoint: &Endpoint, authorization: Option<&str>) -> Result<TcpStream, Trouble> {
+    let mut stream = connect(endpoint)?;
+    let place = endpoint.place();
+    let told = |error: io::Error| Trouble::of_network(&place, &error);
+    stream.set_nodelay(true).map_err(told)?;
+    stream.set_write_timeout(Some(CONNECT)).map_err(told)?;
+    stream.set_read_timeout(Some(PATIENCE)).map_err(told)?;
+    let authorization = authorization.map(|value| format!("Authorization: {value}\r\n")).unwrap_or_default();
+    let request = format!(
+        "GET {} HTTP/1.1\r\nHost: {place}\r\nUser-Agent: nima\r\nAccept: multipart/x-mixed-replace, image/jpeg\r\n{authorization}Connection: close\r\n\r\n",
+        endpoint.path
+    );
+    stream.write_all(request.as_bytes()).map_err(told)?;
+    Ok(stream)
+}
+
 /// Connects to the first address of the camera that responds.
-pub(crate) fn connect(host: &str, port: u16, place: &str) -> Result<TcpStream, Trouble> {
-    let addresses = (host, port).to_socket_addrs().map_err(|_| Trouble::NoSuchName { place: place.to_owned() })?;
-    let mut last = Trouble::NoSuchName { place: place.to_owned() };
+pub(crate) fn connect(endpoint: &Endpoint) -> Result<TcpStream, Trouble> {
+    let place = endpoint.place();
+    let no_such_name = || Trouble::NoSuchName { place: place.clone() };
+    let addresses = (endpoint.host.as_str(), endpoint.port).to_socket_addrs().map_err(|_| no_such_name())?;
+    let mut last = no_such_name();
     for address in addresses.take(ADDRESSES_MOST) {
         match TcpStream::connect_timeout(&address, CONNECT) {
             Ok(stream) => return Ok(stream),
-            Err(error) => last = Trouble::of_network(place, &error),
+            Err(error) => last = Trouble::of_network(&place, &error),
         }
     }
     Err(last)

@@ -43,7 +43,7 @@ mod trouble;
 mod v4l2;
 mod waiting;
 
-pub use address::{Address, AddressError, Capture, Pixels};
+pub use address::{Address, AddressError, Capture, Endpoint, Login, Pixels};
 pub use board::{Board, BoardError};
 pub use camera::{Bend, Camera, Lens};
 pub use colour::{Colours, Layout, Raw};

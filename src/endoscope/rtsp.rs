@@ -10,8 +10,8 @@ use std::{
 use futures_util::StreamExt as _;
 use retina::{
     client::{
-        Demuxed, InitialTimestampPolicy, PlayOptions, Session, SessionOptions, SetupOptions, TcpTransportOptions,
-        TeardownPolicy, Transport,
+        Credentials, Demuxed, InitialTimestampPolicy, PlayOptions, Session, SessionOptions, SetupOptions,
+        TcpTransportOptions, TeardownPolicy, Transport,
     },
     codec::{CodecItem, FrameFormat, VideoFrame},
     rtcp::ReceivedCompoundPacket,
@@ -19,7 +19,7 @@ use retina::{
 use tokio::{runtime::Runtime, time::timeout};
 use url::Url;
 
-use crate::{Address, Compressed, Format, Source, Trouble, http};
+use crate::{Address, Compressed, Endpoint, Format, Login, Source, Trouble, http};
 
 /// Time in which the camera must have answered all requests and started to send.
 const OPENING: Duration = Duration::from_secs(3);
@@ -53,8 +53,8 @@ impl From<retina::Error> for Failure {
 }
 
 /// Opens a camera and starts it.
-pub(crate) fn open(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>, Trouble> {
-    guarded(&format!("{host}:{port}"), || begin(host, port, path))
+pub(crate) fn open(endpoint: &Endpoint) -> Result<Box<dyn Source>, Trouble> {
+    guarded(&endpoint.place(), || begin(endpoint))
 }
 
 /// The client panics on some malformed responses, mostly in its parser of descriptions and in code that relies on it.
@@ -66,14 +66,14 @@ fn guarded<T>(place: &str, work: impl FnOnce() -> Result<T, Trouble>) -> Result<
     })
 }
 
-fn begin(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>, Trouble> {
-    let place = format!("{host}:{port}");
+fn begin(endpoint: &Endpoint) -> Result<Box<dyn Source>, Trouble> {
+    let place = endpoint.place();
     let other = |reason: String| Trouble::Other { place: place.clone(), reason };
-    let address = Address::Rtsp { host: host.to_owned(), port, path: path.to_owned() };
-    let url = Url::parse(&address.to_string()).map_err(|error| other(error.to_string()))?;
+    let url = Url::parse(&Address::Rtsp(endpoint.clone()).to_string()).map_err(|error| other(error.to_string()))?;
+    let login = endpoint.login.clone().map(|Login { user, password }| Credentials { username: user, password });
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| other(error.to_string()))?;
-    match runtime.block_on(async { timeout(OPENING, play(url)).await }) {
+    match runtime.block_on(async { timeout(OPENING, play(url, login)).await }) {
         Err(_) => Err(Trouble::Silent { place }),
         Ok(Ok((session, is_jpeg))) => {
             let session = Some(Box::pin(session));
@@ -81,12 +81,13 @@ fn begin(host: &str, port: u16, path: &str) -> Result<Box<dyn Source>, Trouble> 
             Ok(Box::new(Rtsp { place, runtime, session, is_jpeg, heard, reported_s: None }))
         }
         Ok(Err(Failure::Format(found))) => Err(Trouble::OtherFormat { place, found, wanted: "H.264" }),
-        Ok(Err(Failure::Client(error))) => Err(told(&place, &error, Some((host, port)))),
+        Ok(Err(Failure::Client(error))) => Err(told(&place, &error, Some(endpoint))),
     }
 }
 
-async fn play(url: Url) -> Result<(Demuxed, bool), Failure> {
+async fn play(url: Url, login: Option<Credentials>) -> Result<(Demuxed, bool), Failure> {
     let options = SessionOptions::default().user_agent("nima".to_owned()).teardown(TeardownPolicy::Never);
+    let options = options.creds(login);
     let mut session = Session::describe(url, options).await?;
     let pictures = || session.streams().iter().enumerate().filter(|(_, stream)| stream.media() == "video");
     let known = pictures().find(|(_, stream)| matches!(stream.encoding_name(), "h264" | "jpeg"));
@@ -103,7 +104,7 @@ async fn play(url: Url) -> Result<(Demuxed, bool), Failure> {
 }
 
 /// Converts an error of the client, which is only a text.
-fn told(place: &str, error: &retina::Error, reach: Option<(&str, u16)>) -> Trouble {
+fn told(place: &str, error: &retina::Error, reach: Option<&Endpoint>) -> Trouble {
     let place = place.to_owned();
     let text = error.to_string();
     if let Some(status) = error.status_code().filter(|status| *status != 200) {
@@ -112,7 +113,7 @@ fn told(place: &str, error: &retina::Error, reach: Option<(&str, u16)>) -> Troub
     let begins = |words: &str| text.starts_with(words);
     if begins("Unable to connect") {
         // The error does not include its cause, so connect once more to find it.
-        let why = reach.and_then(|(host, port)| http::connect(host, port, &place).err());
+        let why = reach.and_then(|endpoint| http::connect(endpoint).err());
         return why.unwrap_or(Trouble::Closed { place });
     }
     if begins("Error reading") || begins("Error writing") || begins("Timeout") {

@@ -83,11 +83,11 @@ impl Address {
     /// Why there is no image.
     pub fn open(&self) -> Result<Box<dyn Source>, Trouble> {
         match self {
-            Self::Http { host, port, path } => Ok(Box::new(http::Http::open(host, *port, path)?)),
+            Self::Http(endpoint) => Ok(Box::new(http::Http::open(endpoint)?)),
             #[cfg(feature = "h264")]
-            Self::Rtsp { host, port, path } => crate::rtsp::open(host, *port, path),
+            Self::Rtsp(endpoint) => crate::rtsp::open(endpoint),
             #[cfg(not(feature = "h264"))]
-            Self::Rtsp { .. } => Err(Trouble::NotBuilt { what: "RTSP and H.264" }),
+            Self::Rtsp(_) => Err(Trouble::NotBuilt { what: "RTSP and H.264" }),
             #[cfg(all(target_os = "linux", target_pointer_width = "64"))]
             Self::Camera { path, capture } => crate::v4l2::open(path, *capture),
             #[cfg(not(all(target_os = "linux", target_pointer_width = "64")))]

@@ -62,7 +62,7 @@ impl Trouble {
             }
             Self::NoSuchName { .. } => "Correct the name in the rig file, or give an address in numbers.",
             Self::Refused { status: 401 | 403, .. } => {
-                "Let the camera give its picture without a password: a password is not supported."
+                "Put user and password of the camera into its address in the rig file, as in http://USER:PASSWORD@HOST/PATH, or correct them."
             }
             Self::Refused { status: 404, .. } => "Correct the path in the rig file: the camera has no such page.",
             Self::Refused { .. } => "Correct the address in the rig file, or start the camera again.",

@@ -236,10 +236,14 @@ impl Pictures {
         let time_ns = message.log_time_ns();
         if Some(message.channel()) == self.video {
             let CompressedVideo { data, format, .. } = CompressedVideo::decode(message.data()).ok()?;
-            return (format == Coding::H264.name()).then_some(Recorded { time_ns, coding: Coding::H264, data });
+            return (format == Coding::H264.name()).then(|| Recorded {
+                time_ns,
+                coding: Coding::H264,
+                data: data.into(),
+            });
         }
         let CompressedImage { data, .. } = CompressedImage::decode(message.data()).ok()?;
-        Some(Recorded { time_ns, coding: Coding::Jpeg, data })
+        Some(Recorded { time_ns, coding: Coding::Jpeg, data: data.into() })
     }
 }
 

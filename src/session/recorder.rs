@@ -23,6 +23,7 @@ use nima_machine::{
     teleop::{Calibrations, Origin},
 };
 use nima_recording::session::WriteError;
+use tracing::{error, warn};
 
 pub use self::shared::Progress;
 pub(crate) use self::sync::Sync;
@@ -133,6 +134,7 @@ impl Recorder {
         let run = move || {
             let ran = session.run(&tap, &told);
             if let Err(error) = ran.and_then(|()| session.close(&tap, &told)) {
+                error!(error = &error as &dyn std::error::Error, "the recording has ended by itself");
                 told.trouble.set(error).ok();
             }
             drain(&tap, &told);
@@ -212,6 +214,7 @@ fn drain(tap: &TapEnd, shared: &Shared) {
 /// Reports a failure of the file.
 fn tell(out: &mut Outlet, shared: &Shared) {
     if let Some(why) = out.trouble() {
+        error!(error = &why as &dyn std::error::Error, "the file has ended by itself");
         shared.trouble.set(why).ok();
     }
 }
@@ -287,7 +290,9 @@ impl Session {
                 return Ok(());
             }
             shared.ticks.store(self.scribe.ticks(), Ordering::Relaxed);
-            shared.lost.store(self.scribe.lost(), Ordering::Relaxed);
+            if self.scribe.lost() > 0 && shared.lost.swap(self.scribe.lost(), Ordering::Relaxed) == 0 {
+                warn!("entries are lost: the disk is slower than the loop");
+            }
             shared.bytes.store(self.file.out.bytes(), Ordering::Relaxed);
         }
     }

@@ -271,7 +271,7 @@ impl Topics {
 /// Makes a line of the log, with the value that it is built from; `None` if the text may contain a name.
 pub(crate) fn line(time_ns: u64, level: Level, name: &str, message: String, value: Option<&Logged>) -> Vec<u8> {
     let log = Log {
-        timestamp: Some(foxglove::Timestamp::of_ns(time_ns)),
+        timestamp: Some(foxglove::timestamp(time_ns)),
         level: level as i32,
         message,
         name: name.to_owned(),

@@ -71,6 +71,30 @@ def types():
     return PoseStamped, WrenchStamped, OperatingState
 
 
+def graph_type():
+    """What a participant of ROS 2 (Iron or newer) says of its nodes."""
+    from cyclonedds.idl import IdlStruct
+    from cyclonedds.idl.types import array, sequence, uint8
+
+    @dataclass
+    class Gid(IdlStruct, typename="rmw_dds_common::msg::dds_::Gid_"):
+        data: array[uint8, 16]
+
+    @dataclass
+    class NodeEntitiesInfo(IdlStruct, typename="rmw_dds_common::msg::dds_::NodeEntitiesInfo_"):
+        node_namespace: str
+        node_name: str
+        reader_gid_seq: sequence[Gid]
+        writer_gid_seq: sequence[Gid]
+
+    @dataclass
+    class ParticipantEntitiesInfo(IdlStruct, typename="rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"):
+        gid: Gid
+        node_entities_info_seq: sequence[NodeEntitiesInfo]
+
+    return ParticipantEntitiesInfo
+
+
 # This computer alone, as ROS 2 sets it for LOCALHOST: no multicast, and participants found by their well-known ports.
 LOOPBACK = """<CycloneDDS><Domain>
   <General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces><AllowMulticast>false</AllowMulticast></General>
@@ -108,6 +132,19 @@ class Reader:
 
         return DataReader(self.participant, Topic(self.participant, f"rt/nima/{name}", kind), qos=qos)
 
+    def nodes(self):
+        """Name, number of readers and of writers of each node in the graph."""
+        from cyclonedds.sub import DataReader
+        from cyclonedds.topic import Topic
+
+        topic = Topic(self.participant, "ros_discovery_info", graph_type())
+        reader, end, samples = DataReader(self.participant, topic, qos=self.late), time.time() + 5, []
+        while not samples and time.time() < end:
+            samples = reader.take(N=10)
+            time.sleep(0.01)
+        nodes = [node for sample in samples[-1:] for node in sample.node_entities_info_seq]
+        return [(f"{one.node_namespace}/{one.node_name}", len(one.reader_gid_seq), len(one.writer_gid_seq)) for one in nodes]
+
     def listen(self, seconds):
         found, end = {name: [] for name in self.readers}, time.time() + seconds
         while time.time() < end:
@@ -140,6 +177,8 @@ class Reader:
             theirs = [one for one in ends if one.participant_key != self.participant.guid]
             # Topics of ROS 2 begin so; those of discovery itself do not.
             theirs = [one for one in theirs if one.topic_name.startswith("rt/")]
+            # Every node of ROS 2 has it.
+            theirs = [one for one in theirs if one.topic_name != "rt/parameter_events"]
             return {one.topic_name[3:]: (one.type_name, [one.qos[policy] for policy in policies]) for one in theirs}
 
         return of(BuiltinTopicDcpsPublication), of(BuiltinTopicDcpsSubscription)
@@ -246,6 +285,8 @@ def run(nima):
             found = reader.listen(10)
             peer.check("who comes late learns the state", reader.state_before())
             publications, subscriptions = reader.offered()
+            nodes = reader.nodes()
+            peer.check("its node is in the graph, with its topics", nodes == [("/nima/nima_bridge_ros2", 0, 10)], nodes)
             told = process.communicate()[1]
             peer.check("the run ends well", process.returncode == 0, told)
             between = [sample.state for _, sample in reader.listen(1.5)["right/operating_state"]]

@@ -10,6 +10,7 @@ mod extras;
 pub mod language;
 pub mod leaving;
 mod link;
+mod logging;
 mod objects;
 mod pictures;
 mod recording;

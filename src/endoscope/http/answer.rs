@@ -2,13 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::{
-    chunked::Chunked,
-    head::{Head, end, status},
-};
+use super::{chunked::Chunked, head::Head};
 
-/// Maximum head of a response, and of a part, bytes.
-const HEAD_MOST: usize = 16 << 10;
 /// Maximum size of an image, bytes.
 pub(super) const PICTURE_MOST: usize = 8 << 20;
 /// Number of images that are kept for a slow reader; older ones are dropped.
@@ -25,6 +20,8 @@ pub(super) struct Part {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Wrong {
     Status(u16),
+    /// A password is needed: what the camera asks for.
+    Locked(Vec<String>),
     Format(String),
     Unreadable(&'static str),
     Ended,
@@ -101,23 +98,12 @@ impl Answer {
     }
 
     fn head(&mut self) -> Result<Step, Wrong> {
-        let Some([ends, begins]) = end(&self.held) else {
-            // Report a wrong protocol at the first line.
-            if self.held.len() >= 5 && !self.held.starts_with(b"HTTP/") {
-                return Err(Wrong::Unreadable("an answer that is not HTTP"));
-            }
-            return if self.held.len() > HEAD_MOST {
-                Err(Wrong::Unreadable("a head that does not end"))
-            } else {
-                Ok(Step::Wait)
-            };
-        };
-        let first = self.held[..ends].iter().position(|byte| *byte == b'\n').unwrap_or(ends);
-        let status = status(&self.held[..first])?;
-        if status != 200 {
-            return Err(Wrong::Status(status));
+        let Some((head, begins)) = Head::read(&self.held)? else { return Ok(Step::Wait) };
+        match head.status {
+            200 => {}
+            401 => return Err(Wrong::Locked(head.challenges)),
+            status => return Err(Wrong::Status(status)),
         }
-        let head = Head::parse(&self.held[first..ends])?;
         let kind = head.kind();
         self.boundary = match (kind.as_str(), head.boundary()) {
             (kind, Some(boundary)) if kind.starts_with("multipart/") => boundary,
@@ -152,15 +138,10 @@ impl Answer {
     }
 
     fn part_head(&mut self) -> Result<Step, Wrong> {
-        let Some([ends, begins]) = end(&self.held) else {
+        let Some((head, begins)) = Head::read_part(&self.held)? else {
             self.state = State::PartHead;
-            return if self.held.len() > HEAD_MOST {
-                Err(Wrong::Unreadable("a head that does not end"))
-            } else {
-                Ok(Step::Wait)
-            };
+            return Ok(Step::Wait);
         };
-        let head = Head::parse(&self.held[..ends])?;
         if head.length.is_some_and(|length| length > PICTURE_MOST) {
             return Err(Wrong::Unreadable("a picture that is too long"));
         }

@@ -1,63 +1,46 @@
 //! Parses the chunks of a response (RFC 9112, section 7.1).
 
+use httparse::{Status, parse_chunk_size};
+
 use super::answer::Wrong;
 
 /// Maximum length of a line with a chunk length, bytes.
 const LINE_MOST: usize = 256;
+/// A chunk is followed by the end of its line.
+const LINE_END: u64 = 2;
 
 #[derive(Debug, Default)]
 pub(super) struct Chunked {
-    state: State,
     line: Vec<u8>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-enum State {
-    /// In the line with a length.
-    #[default]
-    Length,
-    /// Remaining bytes of a chunk.
-    Body(usize),
-    /// In the line after a chunk.
-    After,
+    /// Bytes of a chunk that are still to come, with the end of its line.
+    left: u64,
 }
 
 impl Chunked {
     /// Appends the bytes in the chunks to `out`.
     pub(super) fn take(&mut self, mut bytes: &[u8], out: &mut Vec<u8>) -> Result<(), Wrong> {
-        while !bytes.is_empty() {
-            if let State::Body(left) = self.state {
-                let (now, rest) = bytes.split_at(left.min(bytes.len()));
-                out.extend_from_slice(now);
+        while let Some((&first, rest)) = bytes.split_first() {
+            if self.left == 0 {
                 bytes = rest;
-                self.state = if now.len() == left { State::After } else { State::Body(left - now.len()) };
+                self.line.push(first);
+                match parse_chunk_size(&self.line) {
+                    Ok(Status::Complete((_, 0))) => return Err(Wrong::Ended),
+                    Ok(Status::Complete((_, length))) => {
+                        self.left = length.saturating_add(LINE_END);
+                        self.line.clear();
+                    }
+                    Ok(Status::Partial) if self.line.len() <= LINE_MOST => {}
+                    _ => return Err(Wrong::Unreadable("chunks without a length")),
+                }
                 continue;
             }
-            let end = bytes.iter().position(|byte| *byte == b'\n');
-            let (now, rest) = bytes.split_at(end.map_or(bytes.len(), |at| at + 1));
-            self.line.extend_from_slice(now);
-            bytes = rest;
-            if self.line.len() > LINE_MOST {
-                return Err(Wrong::Unreadable("chunks without a length"));
-            }
-            if end.is_some() {
-                self.state = match self.state {
-                    State::After => State::Length,
-                    _ => State::Body(self.length()?),
-                };
-                self.line.clear();
-            }
+            let body = usize::try_from(self.left.saturating_sub(LINE_END)).unwrap_or(usize::MAX).min(bytes.len());
+            out.extend_from_slice(&bytes[..body]);
+            let gone = body.max(1);
+            // Either bytes of the body, or one of the end of its line.
+            bytes = &bytes[gone..];
+            self.left -= gone as u64;
         }
         Ok(())
-    }
-
-    fn length(&self) -> Result<usize, Wrong> {
-        let text = String::from_utf8_lossy(&self.line);
-        let digits = text.split(';').next().unwrap_or_default().trim();
-        match usize::from_str_radix(digits, 16) {
-            Ok(0) => Err(Wrong::Ended),
-            Ok(length) if !digits.starts_with('+') => Ok(length),
-            _ => Err(Wrong::Unreadable("chunks without a length")),
-        }
     }
 }

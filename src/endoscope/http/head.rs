@@ -1,25 +1,61 @@
 //! The head of a response, and of one of its parts.
 
+use httparse::{EMPTY_HEADER, Error, Header, ParserConfig, Response, Status};
+
 use super::answer::Wrong;
+
+/// Longest head, in bytes and in lines.
+const HEAD_MOST: usize = 16 << 10;
+const LINES_MOST: usize = 64;
+/// A part has no status line of its own. It begins with the end of its boundary's line, which completes this one.
+const PART: &[u8] = b"HTTP/1.1 200 OK";
 
 /// Fields of a head; their names are case-insensitive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Head {
+    pub(super) status: u16,
     pub(super) content_type: Option<String>,
     pub(super) length: Option<usize>,
     pub(super) is_chunked: bool,
     pub(super) stamp_s: Option<f64>,
+    /// How the camera wants to be given a password, as it says it.
+    pub(super) challenges: Vec<String>,
 }
 
 impl Head {
-    /// Parses the lines of a head, without the first line.
-    pub(super) fn parse(text: &[u8]) -> Result<Self, Wrong> {
-        let mut head = Self::default();
-        for line in text.split(|byte| *byte == b'\n') {
-            let line = String::from_utf8_lossy(line);
-            let Some((name, value)) = line.split_once(':') else { continue };
+    /// The head of an answer and its length in bytes; `None` before all of it is there.
+    pub(super) fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Wrong> {
+        let mut lines = [EMPTY_HEADER; LINES_MOST];
+        let mut response = Response::new(&mut lines);
+        // As lenient as browsers are, with which cameras are tried.
+        let mut parser = ParserConfig::default();
+        parser.allow_spaces_after_header_name_in_responses(true);
+        parser.allow_multiple_spaces_in_response_status_delimiters(true);
+        parser.ignore_invalid_headers_in_responses(true);
+        match parser.parse_response(&mut response, bytes) {
+            Ok(Status::Complete(length)) => {
+                let status = response.code.unwrap_or_default();
+                Ok(Some((Self::of(status, response.headers)?, length)))
+            }
+            Ok(Status::Partial) if bytes.len() <= HEAD_MOST => Ok(None),
+            Ok(Status::Partial) | Err(Error::TooManyHeaders) => Err(Wrong::Unreadable("a head that does not end")),
+            Err(_) => Err(Wrong::Unreadable("an answer that is not HTTP")),
+        }
+    }
+
+    /// The head of a part, from behind its boundary.
+    pub(super) fn read_part(bytes: &[u8]) -> Result<Option<(Self, usize)>, Wrong> {
+        let end = bytes.len().min(HEAD_MOST + 1);
+        let found = Self::read(&[PART, &bytes[..end]].concat())?;
+        Ok(found.map(|(head, length)| (head, length - PART.len())))
+    }
+
+    fn of(status: u16, lines: &[Header]) -> Result<Self, Wrong> {
+        let mut head = Self { status, ..Self::default() };
+        for line in lines {
+            let value = String::from_utf8_lossy(line.value);
             let value = value.trim();
-            match name.trim().to_ascii_lowercase().as_str() {
+            match line.name.to_ascii_lowercase().as_str() {
                 "content-type" => head.content_type = Some(value.to_owned()),
                 "content-length" => {
                     let length = value.parse().map_err(|_| Wrong::Unreadable("a length that is not a number"))?;
@@ -32,6 +68,7 @@ impl Head {
                 },
                 // Seconds, as sent by mjpg-streamer and others.
                 "x-timestamp" => head.stamp_s = value.parse().ok().filter(|stamp_s: &f64| stamp_s.is_finite()),
+                "www-authenticate" => head.challenges.push(value.to_owned()),
                 _ => {}
             }
         }
@@ -56,20 +93,4 @@ impl Head {
             .filter(|boundary| !boundary.is_empty() && boundary.len() <= 200)
             .map(|text| text.as_bytes().to_vec())
     }
-}
-
-/// Returns the status in the first line of a response.
-pub(super) fn status(line: &[u8]) -> Result<u16, Wrong> {
-    let text = String::from_utf8_lossy(line);
-    let mut words = text.split_whitespace();
-    let is_http = words.next().is_some_and(|version| version.starts_with("HTTP/1."));
-    let status = words.next().and_then(|status| status.parse().ok());
-    status.filter(|_| is_http).ok_or(Wrong::Unreadable("an answer that is not HTTP"))
-}
-
-/// Returns the end of a head and the begin of the data after it; cameras end lines with and without a carriage return.
-pub(super) fn end(bytes: &[u8]) -> Option<[usize; 2]> {
-    let with = bytes.windows(4).position(|four| four == b"\r\n\r\n").map(|at| [at, at + 4]);
-    let without = bytes.windows(2).position(|two| two == b"\n\n").map(|at| [at, at + 2]);
-    [with, without].into_iter().flatten().min()
 }

@@ -8,6 +8,7 @@ use nima_testing::fuzz;
 use proptest::prelude::*;
 
 use super::{answer::PICTURE_MOST, *};
+use crate::Login;
 
 const HEAD: &str = "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\n\r\n";
 
@@ -171,18 +172,83 @@ fn fuzz_damaged_answers() {
     println!("{rounds} x 100000 answers");
 }
 
+fn endpoint(port: u16) -> Endpoint {
+    Endpoint { host: "127.0.0.1".to_owned(), port, path: "/a?b".to_owned(), login: None }
+}
+
 /// A camera that answers one client in this way.
 fn camera(act: impl FnOnce(TcpStream) + Send + 'static) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     thread::spawn(move || {
-        let (mut stream, _) = listener.accept().unwrap();
-        let mut request = [0; 1000];
-        let count = stream.read(&mut request).unwrap();
-        assert!(request[..count].starts_with(b"GET /a?b HTTP/1.1\r\nHost: 127.0.0.1:"));
-        act(stream);
+        act(asked(&listener).0);
     });
     port
+}
+
+/// The next client and its request.
+fn asked(listener: &TcpListener) -> (TcpStream, String) {
+    let (mut stream, _) = listener.accept().unwrap();
+    let mut request = [0; 1000];
+    let count = stream.read(&mut request).unwrap();
+    assert!(request[..count].starts_with(b"GET /a?b HTTP/1.1\r\nHost: 127.0.0.1:"));
+    (stream, String::from_utf8(request[..count].to_vec()).unwrap())
+}
+
+/// What a client with this login comes to at a camera that demands a password so, and what it sent the second time.
+fn logged_in(challenges: &'static str, login: Option<Login>) -> (Result<Compressed, Trouble>, Option<String>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let asks_twice = login.is_some() && challenges.contains("realm");
+    let served = thread::spawn(move || {
+        let (mut stream, request) = asked(&listener);
+        assert!(!request.contains("Authorization"));
+        stream
+            .write_all(format!("HTTP/1.1 401 Unauthorized\r\n{challenges}Content-Length: 0\r\n\r\n").as_bytes())
+            .unwrap();
+        asks_twice.then(|| {
+            let (mut stream, request) = asked(&listener);
+            let authorization =
+                request.lines().find_map(|line| line.strip_prefix("Authorization: ")).unwrap().to_owned();
+            if authorization.contains("wrong") {
+                stream
+                    .write_all(
+                        b"HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n\r\n",
+                    )
+                    .unwrap();
+            } else {
+                stream.write_all(&[HEAD.as_bytes(), &parts(true)].concat()).unwrap();
+            }
+            authorization
+        })
+    });
+    let mut source = Http::open(&Endpoint { login, ..endpoint(port) }).unwrap();
+    let first = std::iter::repeat_with(|| source.next()).find_map(Result::transpose).unwrap();
+    (first, served.join().unwrap())
+}
+
+#[test]
+fn a_password_is_given_as_the_camera_asks_for_it() {
+    let login = |user: &str| Some(Login { user: user.to_owned(), password: "secret".to_owned() });
+    let (picture, sent) = logged_in("WWW-Authenticate: Basic realm=\"x\"\r\n", login("eva"));
+    // base64 of eva:secret
+    assert_eq!((picture.unwrap().bytes, sent.as_deref()), (body(0), Some("Basic ZXZhOnNlY3JldA==")));
+    // The safer way is taken of two.
+    let both = "WWW-Authenticate: Basic realm=\"x\"\r\nWWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n";
+    for challenges in [both, "www-authenticate: Digest realm=\"x\", qop=\"auth\", nonce=\"1\", algorithm=MD5\r\n"] {
+        let (picture, sent) = logged_in(challenges, login("eva"));
+        assert_eq!(picture.unwrap().bytes, body(0));
+        let sent = sent.unwrap();
+        assert!(sent.starts_with("Digest ") && sent.contains("uri=\"/a?b\"") && !sent.contains("secret"), "{sent}");
+    }
+    let refused = |challenges, login| {
+        let trouble = logged_in(challenges, login).0.err().unwrap();
+        assert!(matches!(trouble, Trouble::Refused { status: 401, .. }) && trouble.cure().contains("USER:PASSWORD"));
+    };
+    refused("WWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n", login("wrong"));
+    refused("WWW-Authenticate: Digest realm=\"x\", nonce=\"1\"\r\n", None);
+    refused("WWW-Authenticate: Other\r\n", login("eva"));
+    refused("", login("eva"));
 }
 
 #[test]
@@ -191,7 +257,7 @@ fn pictures_come_over_a_connection_and_its_end_is_told() {
         stream.write_all(HEAD.as_bytes()).unwrap();
         stream.write_all(&parts(true)).unwrap();
     });
-    let mut source = Http::open("127.0.0.1", port, "/a?b").unwrap();
+    let mut source = Http::open(&endpoint(port)).unwrap();
     let mut seen = Vec::new();
     let told = loop {
         match source.next() {
@@ -208,10 +274,10 @@ fn who_does_not_listen_or_does_not_speak_http_is_told_with_a_cure() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let told = Http::open("127.0.0.1", port, "/").err().unwrap();
+    let told = Http::open(&endpoint(port)).err().unwrap();
     assert!(matches!(told, Trouble::NobodyListens { .. }) && told.cure().contains("port"), "{told}");
     let port = camera(|mut stream| stream.write_all(b"220 mail ready\r\n").unwrap());
-    let mut source = Http::open("127.0.0.1", port, "/a?b").unwrap();
+    let mut source = Http::open(&endpoint(port)).unwrap();
     let told = std::iter::repeat_with(|| source.next()).find_map(Result::err).unwrap();
     assert!(told.to_string().contains("not HTTP") && told.cure().contains("another program"), "{told}");
 }

@@ -15,6 +15,10 @@ use crate::{
 const SIZE_PX: [usize; 2] = [64, 48];
 const STAMP_STEP: u32 = 3000;
 
+fn endpoint(port: u16) -> Endpoint {
+    Endpoint { host: "127.0.0.1".to_owned(), port, path: "/s".to_owned(), login: None }
+}
+
 /// A camera's responses to DESCRIBE, SETUP and PLAY; `N` is replaced by the number of the request. Some images and a
 /// report follow the last response.
 fn answers(encoding: &str) -> [Vec<u8>; 3] {
@@ -98,7 +102,7 @@ fn camera(answers: Vec<Vec<u8>>) -> u16 {
 #[test]
 fn pictures_come_with_the_stamps_of_the_sender_and_their_end_is_told() {
     let port = camera(answers("H264").to_vec());
-    let mut source = open("127.0.0.1", port, "/s").unwrap();
+    let mut source = open(&endpoint(port)).unwrap();
     let mut keys = Vec::new();
     let mut stamps_s = Vec::new();
     let mut decoder = crate::h264::Decoder::default();
@@ -128,7 +132,7 @@ fn each_cause_is_told_with_its_cure() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let told = |port| open("127.0.0.1", port, "/s").err().unwrap();
+    let told = |port| open(&endpoint(port)).err().unwrap();
     assert!(matches!(told(port), Trouble::NobodyListens { .. }));
     let status = |status: &str| camera(vec![format!("RTSP/1.0 {status}\r\nCSeq: N\r\n\r\n").into_bytes()]);
     assert!(matches!(told(status("404 Not Found")), Trouble::Refused { status: 404, .. }));
@@ -151,7 +155,7 @@ fn a_client_that_panics_ends_what_was_asked_for_and_not_the_thread() {
 fn a_description_whose_lines_are_out_of_order_is_told() {
     let [described, set_up, plays] = answers("H264");
     let text = String::from_utf8(described).unwrap().replace("m=audio 0 RTP/AVP 0\r\n", "t=0 0\r\n");
-    let trouble = open("127.0.0.1", camera(vec![text.into_bytes(), set_up, plays]), "/s").err();
+    let trouble = open(&endpoint(camera(vec![text.into_bytes(), set_up, plays]))).err();
     let told = trouble.map(|trouble| trouble.to_string()).unwrap_or_default();
     assert!(told.contains("cannot be"), "{told}");
 }
@@ -186,7 +190,7 @@ fn mutate(seed: u64, count: usize) -> usize {
     });
     let mut pictures = 0;
     for _ in 0..count {
-        let Ok(mut source) = open("127.0.0.1", port, "/s") else { continue };
+        let Ok(mut source) = open(&endpoint(port)) else { continue };
         while let Ok(next) = source.next() {
             pictures += usize::from(next.is_some());
         }

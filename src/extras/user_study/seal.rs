@@ -74,13 +74,14 @@ impl Key {
         let cipher = self.cipher(&salt, purpose);
         to.write_all(MAGIC)?;
         to.write_all(&salt)?;
-        let mut piece = vec![0; PIECE];
+        let mut piece = Vec::with_capacity(PIECE);
         for number in 0.. {
-            let filled = fill(&mut from, &mut piece)?;
-            let is_last = filled < PIECE;
-            let sealed = cipher.encrypt_in_place_detached(&nonce(number, is_last), &[], &mut piece[..filled]);
+            piece.clear();
+            from.by_ref().take(PIECE as u64).read_to_end(&mut piece)?;
+            let is_last = piece.len() < PIECE;
+            let sealed = cipher.encrypt_in_place_detached(&nonce(number, is_last), &[], &mut piece);
             let tag = sealed.map_err(|_| io::Error::other("encryption failed"))?;
-            to.write_all(&piece[..filled])?;
+            to.write_all(&piece)?;
             to.write_all(&tag)?;
             if is_last {
                 break;
@@ -100,15 +101,17 @@ impl Key {
         }
         let salt: [u8; SALT] = salt.try_into().map_err(|_| refused("it is not a sealed file"))?;
         let cipher = self.cipher(&salt, purpose);
-        let mut piece = vec![0; PIECE + TAG];
+        let mut sealed = Vec::with_capacity(PIECE + TAG);
         for number in 0.. {
-            let filled = fill(&mut from, &mut piece)?;
-            let Some(length) = filled.checked_sub(TAG) else { return Err(refused("it was cut off")) };
-            let is_last = length < PIECE;
-            let tag = *Tag::from_slice(&piece[length..filled]);
-            let opened = cipher.decrypt_in_place_detached(&nonce(number, is_last), &[], &mut piece[..length], &tag);
+            sealed.clear();
+            from.by_ref().take((PIECE + TAG) as u64).read_to_end(&mut sealed)?;
+            let Some((piece, tag)) = sealed.split_last_chunk_mut::<TAG>() else {
+                return Err(refused("it was cut off"));
+            };
+            let is_last = piece.len() < PIECE;
+            let opened = cipher.decrypt_in_place_detached(&nonce(number, is_last), &[], piece, Tag::from_slice(tag));
             opened.map_err(|_| refused("it was changed or cut off, or the key belongs to another study"))?;
-            to.write_all(&piece[..length])?;
+            to.write_all(piece)?;
             if is_last {
                 break;
             }
@@ -135,18 +138,4 @@ fn nonce(number: u64, is_last: bool) -> Nonce {
     nonce[..8].copy_from_slice(&number.to_le_bytes());
     nonce[8] = u8::from(is_last);
     nonce.into()
-}
-
-/// Reads until the buffer is full or the input ends.
-fn fill(from: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
-    let mut filled = 0;
-    while filled < buffer.len() {
-        match from.read(&mut buffer[filled..]) {
-            Ok(0) => break,
-            Ok(more) => filled += more,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(filled)
 }

@@ -1,8 +1,17 @@
 //! Real-time scheduling, memory locking and sleeping until a deadline: the only system calls of this crate.
 #![cfg_attr(
     target_os = "linux",
-    expect(unsafe_code, reason = "scheduling, memory locking and absolute sleep have no safe interface in std")
+    expect(unsafe_code, reason = "memory locking, absolute sleep and processor time have no safe interface in std")
 )]
+
+#[cfg(target_os = "linux")]
+use std::time::Duration;
+
+#[cfg(target_os = "linux")]
+use thread_priority::{
+    DeadlineFlags, RealtimeThreadSchedulePolicy, ThreadPriority, ThreadPriorityValue, ThreadSchedulePolicy,
+    set_thread_priority_and_policy,
+};
 
 use crate::{config::SchedulingClass, messages::Scheduling};
 
@@ -24,8 +33,7 @@ pub(super) fn cpu_s() -> [f64; 2] {
 }
 
 /// Priority of the loop: above ordinary audio (70), below the kernel's own threads (99).
-#[cfg(target_os = "linux")]
-const PRIORITY: i32 = 80;
+const PRIORITY: u8 = 80;
 /// Bytes of stack touched in advance, so that no page fault occurs in a tick.
 const STACK_TOUCHED: usize = 128 * 1024;
 
@@ -52,65 +60,52 @@ fn touch_stack() {
 
 /// Gives the calling thread (the supervisor) a priority above the loop's, if the system permits it.
 pub(super) fn prepare_supervisor() {
-    #[cfg(target_os = "linux")]
-    // SAFETY: a plain system call on the calling thread with a valid, initialised argument.
-    unsafe {
-        // Field by field, because some C libraries have additional fields.
-        let mut parameter: libc::sched_param = std::mem::zeroed();
-        parameter.sched_priority = PRIORITY + 5;
-        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter);
-    }
+    raised(PRIORITY + 5);
+}
+
+/// Requests `SCHED_FIFO` with this priority for the calling thread. Returns whether it was granted.
+#[cfg(target_os = "linux")]
+fn raised(priority: u8) -> bool {
+    let fifo = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    ThreadPriorityValue::try_from(priority).map(ThreadPriority::Crossplatform).is_ok_and(|priority| {
+        set_thread_priority_and_policy(thread_priority::thread_native_id(), priority, fifo).is_ok()
+    })
+}
+
+/// Requests the highest priority that the system gives to ordinary programs. Returns whether it was granted.
+#[cfg(not(target_os = "linux"))]
+fn raised(_: u8) -> bool {
+    thread_priority::ThreadPriority::Max.set_for_current().is_ok()
 }
 
 /// Fraction of the period that `SCHED_DEADLINE` lets the loop use before the kernel suspends it until the next period.
 #[cfg(target_os = "linux")]
 const BUDGET: f64 = 0.8;
 
-/// The kernel's `struct sched_attr`, see `sched_setattr(2)`. Not every C library declares it.
+/// The calling thread, for `sched_setattr(2)`. The library hands its argument to the kernel as it is, which expects no handle of the C library here.
 #[cfg(target_os = "linux")]
-#[repr(C)]
-struct SchedulingAttributes {
-    size: u32,
-    policy: u32,
-    flags: u64,
-    nice: i32,
-    priority: u32,
-    runtime_ns: u64,
-    deadline_ns: u64,
-    period_ns: u64,
-}
+const THIS_THREAD: thread_priority::ThreadId = 0;
 
 /// Requests a time budget in every period (`SCHED_DEADLINE`). The kernel refuses if the thread may not use all
 /// processors, or if their time is already reserved.
 #[cfg(target_os = "linux")]
 fn deadline_granted(period_ns: u64) -> bool {
-    const SCHED_DEADLINE: u32 = 6;
-    let attributes = SchedulingAttributes {
-        size: size_of::<SchedulingAttributes>() as u32,
-        policy: SCHED_DEADLINE,
-        flags: 0,
-        nice: 0,
-        priority: 0,
-        runtime_ns: (BUDGET * period_ns as f64) as u64,
-        deadline_ns: period_ns,
-        period_ns,
-    };
-    // SAFETY: a plain system call on the calling thread; the structure is valid and states its own size.
-    unsafe { libc::syscall(libc::SYS_sched_setattr, 0, &raw const attributes, 0) == 0 }
+    let period = Duration::from_nanos(period_ns);
+    let runtime = period.mul_f64(BUDGET);
+    let flags = DeadlineFlags::empty();
+    let budget = ThreadPriority::Deadline { runtime, deadline: period, period, flags };
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Deadline);
+    set_thread_priority_and_policy(THIS_THREAD, budget, policy).is_ok()
 }
 
 /// Requests `SCHED_DEADLINE` with this budget if there is one, otherwise `SCHED_FIFO`, which is also the fallback.
 #[cfg(target_os = "linux")]
 fn granted(period_ns: Option<u64>) -> Scheduling {
     let deadline = period_ns.is_some_and(deadline_granted);
+    let fifo = !deadline && raised(PRIORITY);
     // SAFETY: plain system calls on the calling thread with valid, initialised arguments.
     unsafe {
         libc::prctl(libc::PR_SET_TIMERSLACK, 1_usize);
-        // Field by field, because some C libraries have additional fields.
-        let mut parameter: libc::sched_param = std::mem::zeroed();
-        parameter.sched_priority = PRIORITY;
-        let fifo =
-            !deadline && libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &raw const parameter) == 0;
         // Lock only without a limit: with a finite limit the process soon fails to map memory.
         let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
         let unlimited = libc::geteuid() == 0
@@ -124,6 +119,7 @@ fn granted(period_ns: Option<u64>) -> Scheduling {
 
 #[cfg(not(target_os = "linux"))]
 fn granted(_: Option<u64>) -> Scheduling {
+    raised(PRIORITY);
     Scheduling::default()
 }
 

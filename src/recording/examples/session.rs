@@ -19,8 +19,8 @@ use nima_recording::{
     messages::{
         JointStateEncoder,
         foxglove::{
-            self, Arrow, Color, FrameTransform, FrameTransforms, Level, Log, Pose, Quaternion, SceneEntity,
-            SceneUpdate, Timestamp, Vector3,
+            self, ArrowPrimitive, Color, FrameTransform, FrameTransforms, Level, Log, Pose, Quaternion, SceneEntity,
+            SceneUpdate, Vector3, timestamp,
         },
     },
     session::{ChannelId, Encoding, Reader, Writer},
@@ -178,7 +178,7 @@ fn place(values: &[f64; SIGNALS]) -> Vector3 {
 const UPRIGHT: Quaternion = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
 
 fn frames(time_ns: u64, values: &[f64; SIGNALS]) -> FrameTransforms {
-    let timestamp = Some(Timestamp::of_ns(time_ns));
+    let timestamp = Some(timestamp(time_ns));
     let translation = Some(place(values));
     let rotation = Some(UPRIGHT);
     let parent_frame_id = "world".into();
@@ -191,22 +191,28 @@ fn frames(time_ns: u64, values: &[f64; SIGNALS]) -> FrameTransforms {
 fn arrow(time_ns: u64, values: &[f64; SIGNALS]) -> SceneUpdate {
     let pose = Some(Pose { position: Some(place(values)), orientation: Some(UPRIGHT) });
     let color = Some(Color { r: 1.0, g: 0.5, b: 0.0, a: 1.0 });
-    let arrow =
-        Arrow { pose, shaft_length: 0.05, shaft_diameter: 0.002, head_length: 0.01, head_diameter: 0.004, color };
+    let arrow = ArrowPrimitive {
+        pose,
+        shaft_length: 0.05,
+        shaft_diameter: 0.002,
+        head_length: 0.01,
+        head_diameter: 0.004,
+        color,
+    };
     let entity = SceneEntity {
-        timestamp: Some(Timestamp::of_ns(time_ns)),
+        timestamp: Some(timestamp(time_ns)),
         frame_id: "world".into(),
         id: "right.force".into(),
-        lifetime: None,
         frame_locked: true,
         arrows: vec![arrow],
+        ..SceneEntity::default()
     };
-    SceneUpdate { entities: vec![entity] }
+    SceneUpdate { entities: vec![entity], ..SceneUpdate::default() }
 }
 
 fn line(tick: u64, time_ns: u64) -> Log {
     Log {
-        timestamp: Some(Timestamp::of_ns(time_ns)),
+        timestamp: Some(timestamp(time_ns)),
         level: Level::Warning.into(),
         message: format!("tick {tick}"),
         name: "right".into(),

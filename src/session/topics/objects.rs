@@ -8,7 +8,7 @@ use nima_core::task::Happening;
 use nima_machine::rig::{SIDES, Side};
 use nima_recording::{
     messages::{
-        foxglove::{self, FrameTransform, FrameTransforms, Timestamp},
+        foxglove::{self, FrameTransform, FrameTransforms, timestamp},
         json_encoding,
     },
     session::WriteError,
@@ -189,7 +189,7 @@ pub(crate) fn rings_channel(out: &mut Outlet) -> Result<Channel, WriteError> {
 
 /// Returns the frames of the rings that are in view.
 pub(crate) fn rings(time_ns: u64, rings: &[Option<Isometry3<f64>>]) -> FrameTransforms {
-    let timestamp = Some(Timestamp::of_ns(time_ns));
+    let timestamp = Some(timestamp(time_ns));
     let frame = |(number, ring): (usize, &Option<Isometry3<f64>>)| {
         let ring = ring.as_ref()?;
         Some(FrameTransform {
@@ -205,7 +205,7 @@ pub(crate) fn rings(time_ns: u64, rings: &[Option<Isometry3<f64>>]) -> FrameTran
 
 /// Returns the frames of these marks.
 pub(crate) fn marks(time_ns: u64, marks: &[Mark]) -> FrameTransforms {
-    let timestamp = Some(Timestamp::of_ns(time_ns));
+    let timestamp = Some(timestamp(time_ns));
     let frame = |(number, mark): (usize, &Mark)| FrameTransform {
         timestamp,
         parent_frame_id: WORLD.to_owned(),

@@ -2,7 +2,7 @@
 
 use nima_recording::{
     messages::{
-        foxglove::{self, CompressedImage, CompressedVideo, Timestamp},
+        foxglove::{self, CompressedImage, CompressedVideo, timestamp},
         json_encoding,
     },
     session::WriteError,
@@ -71,8 +71,10 @@ impl OfPictures {
         let [number, dropped] = self.counts();
         let told =
             PictureFigures { number, bytes: data.len() as u64, dropped, camera_s: camera_s.filter(|s| s.is_finite()) };
-        let (timestamp, format, frame_id) =
-            (Some(Timestamp::of_ns(time_ns)), coding.name().to_owned(), FRAME.to_owned());
+        let timestamp = Some(timestamp(time_ns));
+        let format = coding.name().to_owned();
+        let frame_id = FRAME.to_owned();
+        let data = data.into();
         match coding {
             Coding::Jpeg => {
                 let open = || out.file_channel(PICTURE_TOPIC, foxglove::encoding::<CompressedImage>());

@@ -4,7 +4,8 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use nima_machine::{messages::Tick, rig::Side};
 use nima_recording::{
     messages::foxglove::{
-        self, Arrow, Color, FrameTransform, FrameTransforms, Pose, Quaternion, SceneEntity, SceneUpdate, Timestamp,
+        self, ArrowPrimitive, Color, FrameTransform, FrameTransforms, Pose, Quaternion, SceneEntity, SceneUpdate,
+        timestamp,
     },
     session::WriteError,
 };
@@ -67,7 +68,7 @@ impl Scene {
             return Ok(());
         }
         self.due_s = t_s + EVERY_S;
-        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let timestamp = Some(timestamp(time_ns));
         let mut frames = FrameTransforms::default();
         let mut scene = SceneUpdate::default();
         for tick in ticks {
@@ -119,12 +120,12 @@ pub(crate) fn endoscope_of(data: &[u8]) -> Option<Isometry3<f64>> {
 }
 
 /// A force (N) at a position (m); no arrow if the force is zero or unknown.
-fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<Arrow> {
+fn arrow(at_m: &Vector3<f64>, force_n: &Vector3<f64>, color: Color) -> Option<ArrowPrimitive> {
     // An arrow points along its own x axis; for the opposite direction any half turn is correct.
     let turned = UnitQuaternion::rotation_between(&Vector3::x(), force_n)
         .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
     let length_m = force_n.norm() * LENGTH_M_N;
-    (length_m > 1e-6).then(|| Arrow {
+    (length_m > 1e-6).then(|| ArrowPrimitive {
         pose: Some(Pose { position: Some(vector(at_m)), orientation: Some(quaternion(&turned)) }),
         shaft_length: length_m,
         shaft_diameter: SHAFT_M,

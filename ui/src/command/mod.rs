@@ -24,11 +24,17 @@ use std::process::ExitCode;
 
 use clap::{
     ArgMatches, CommandFactory as _, Parser, Subcommand,
+    builder::{PossibleValuesParser, TypedValueParser as _},
     error::{ContextKind, ContextValue},
 };
 use nima_files::shortened;
+use tracing::level_filters::LevelFilter;
 
-use crate::{extras, telling::tell};
+use crate::{
+    extras,
+    logging::{self, LEVELS},
+    telling::tell,
+};
 
 /// Exit code if no window can be opened (`EX_UNAVAILABLE`): the start script then runs `nima run`.
 const NO_WINDOW: u8 = 69;
@@ -37,6 +43,9 @@ const NO_WINDOW: u8 = 69;
 #[derive(Debug, Parser)]
 #[command(name = "nima", version, max_term_width = 100)]
 struct Cli {
+    /// Write what background threads report to stderr, with times; the variable `NIMA_LOG` does the same
+    #[arg(long, global = true, value_name = "LEVEL", value_parser = PossibleValuesParser::new(LEVELS).try_map(|level| level.parse::<LevelFilter>()))]
+    log: Option<LevelFilter>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -113,6 +122,7 @@ pub fn main() -> ExitCode {
         // --help and --version.
         Err(error) => error.exit(),
     };
+    logging::begin(given.get_one("log").copied());
     extras::begin();
     let result = extras::part(|extra| extra.run(&given)).unwrap_or_else(|| run_own(&given));
     match result {

@@ -31,6 +31,7 @@ pub mod page;
 mod palette;
 pub mod panels;
 pub(crate) mod past;
+pub(crate) mod picking;
 pub mod pictures;
 pub mod reader;
 pub mod readings;

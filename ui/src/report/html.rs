@@ -1,30 +1,72 @@
 //! Building blocks of a page.
 
-/// Escapes text for an element or an attribute.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            letter => escaped.push(letter),
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
+
+const STYLE: &str = include_str!("style.css");
+
+/// A page that needs no other file.
+pub(crate) fn page(title: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { (title) }
+                (body)
+            }
         }
-    }
-    escaped
+    };
+    page.into_string()
 }
 
-/// A table; the cells are markup.
-pub(crate) fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
-    let line = |cells: &mut dyn Iterator<Item = &str>, tag: &str| {
-        let cells: Vec<String> = cells.map(|cell| format!("<{tag}>{cell}</{tag}>")).collect();
-        format!("<tr>{}</tr>\n", cells.concat())
-    };
-    let rows: Vec<String> = rows.iter().map(|row| line(&mut row.iter().map(String::as_str), "td")).collect();
-    let heads = line(&mut heads.iter().copied(), "th");
-    format!("<table>\n<thead>{heads}</thead>\n<tbody>\n{}</tbody>\n</table>\n", rows.concat())
+/// A part of a page under its title.
+pub(crate) fn section(title: &str, body: &impl Render) -> Markup {
+    html! {
+        section {
+            h2 { (title) }
+            (body)
+        }
+    }
+}
+
+/// A table of text or markup.
+pub(crate) fn table<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>]) -> Markup {
+    html! {
+        table {
+            thead {
+                tr { @for head in heads { th { (head) } } }
+            }
+            tbody {
+                @for row in rows { tr { @for cell in row { td { (cell) } } } }
+            }
+        }
+    }
+}
+
+/// A table, or this sentence in place of one without rows.
+pub(crate) fn table_or<Cell: Render>(heads: &[impl Render], rows: &[Vec<Cell>], nothing: &str) -> Markup {
+    if rows.is_empty() {
+        html! { p { (nothing) } }
+    } else {
+        table(heads, rows)
+    }
+}
+
+/// A drawing of this width and height.
+pub(crate) fn drawing(size: [f64; 2], title: &str, body: &Markup) -> Markup {
+    let [width, height] = size;
+    html! {
+        svg viewBox=(format_args!("0 0 {width} {height}")) role="img" aria-label=(title) font-family="sans-serif" font-size="12"
+            style=(format_args!("max-width: {width}px")) {
+            title { (title) }
+            (body)
+        }
+    }
 }
 
 /// A number with three significant digits.

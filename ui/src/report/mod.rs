@@ -5,19 +5,16 @@ pub(crate) mod html;
 mod overall;
 pub(crate) mod plots;
 
-use std::{
-    fmt::Write as _,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use maud::{Markup, html};
 use nima_session::report::Figures;
 
 use crate::command::output;
-use html::{escape, table};
+use html::{section, table};
 
 pub(crate) const PAGE: &str = "report.html";
-pub(crate) const STYLE: &str = include_str!("style.css");
 
 /// Reads the sessions and writes their page into this folder, which is created if missing.
 pub(crate) fn write(sessions: &[PathBuf], folder: &Path) -> anyhow::Result<PathBuf> {
@@ -40,34 +37,25 @@ fn page(sessions: &[Figures]) -> String {
         [one] => format!("Session {}", name(one)),
         _ => format!("{} sessions", sessions.len()),
     };
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width\">\n<title>{0}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p \
-         class=\"note\">NIMA Console, research use only. Forces act from the tissue on the instrument's tip. \
-         Times are seconds since the start of the session.</p>\n",
-        escape(&title)
-    );
-    if sessions.len() > 1 {
-        page.push_str("<section>\n<h2>Comparison</h2>\n");
-        page.push_str(&overall::comparison(sessions));
-        page.push_str("</section>\n");
-    }
-    for session in sessions {
-        if sessions.len() > 1 {
-            writeln!(page, "<h1>Session {}</h1>", escape(&name(session))).ok();
+    let is_comparison = sessions.len() > 1;
+    let body = html! {
+        p.note {
+            "NIMA Console, research use only. Forces act from the tissue on the instrument's tip. Times are seconds \
+             since the start of the session."
         }
-        page.push_str(&overall::summary(session));
-        for arm in &session.arms {
-            page.push_str(&arms::arm(session, arm));
+        @if is_comparison { (section("Comparison", &overall::comparison(sessions))) }
+        @for session in sessions {
+            @if is_comparison { h1 { "Session " (name(session)) } }
+            (overall::summary(session))
+            @for arm in &session.arms { (arms::arm(session, arm)) }
+            (overall::happenings(session))
+            (overall::timing(session))
+            (overall::marks(session))
+            (overall::calibrations(session))
         }
-        page.push_str(&overall::happenings(session));
-        page.push_str(&overall::timing(session));
-        page.push_str(&overall::marks(session));
-        page.push_str(&overall::calibrations(session));
-    }
-    page.push_str(&definitions());
-    page.push_str("</body>\n</html>\n");
-    page
+        (definitions())
+    };
+    html::page(&title, &body)
 }
 
 fn name(session: &Figures) -> String {
@@ -76,7 +64,7 @@ fn name(session: &Figures) -> String {
         .map_or_else(|| session.file.clone(), |name| name.to_string_lossy().into_owned())
 }
 
-fn definitions() -> String {
+fn definitions() -> Markup {
     let rows = [
         ["peak, mean", "maximum and mean magnitude of the force"],
         ["integral", "magnitude of the force, integrated over time"],
@@ -96,8 +84,7 @@ fn definitions() -> String {
         ],
         ["gates", "the checks between a mode's force and the hand; each can reduce the force"],
     ];
-    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect()).collect();
-    format!("<section>\n<h2>Definitions</h2>\n{}</section>\n", table(&["word", "meaning"], &rows))
+    section("Definitions", &table(&["word", "meaning"], &rows.map(Vec::from)))
 }
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
 //! The part of the page about a session as a whole, and the comparison of several sessions.
 
-use std::fmt::Write as _;
-
+use maud::{Markup, html};
 use nima_session::{
     anonymous::ANONYMOUS,
     report::{ArmFigures, Figures, Mark, MarkLevel, PicturesFigures},
 };
 
 use super::{
-    html::{digits, escape, percent, table, time},
+    html::{digits, percent, section, table, table_or, time},
     name,
 };
 
@@ -42,41 +41,34 @@ const CALIBRATIONS: [(&str, &str); 7] = [
 ];
 
 /// Properties of the session, and warnings.
-pub(super) fn summary(session: &Figures) -> String {
-    let mut rows =
-        vec![vec!["file".to_owned(), escape(&name(session))], vec!["length".to_owned(), time(session.length_s)]];
+pub(super) fn summary(session: &Figures) -> Markup {
+    let mut rows = vec![["file".to_owned(), name(session)], ["length".to_owned(), time(session.length_s)]];
     for (key, words) in ABOUT {
         if let Some(value) = session.about.get(key) {
-            rows.push(vec![words.to_owned(), escape(value)]);
+            rows.push([words.to_owned(), value.clone()]);
         }
     }
-    rows.push(vec!["end".to_owned(), end(session).to_owned()]);
-    rows.push(vec!["gaps in the journal".to_owned(), holes(session)]);
+    rows.push(["end".to_owned(), end(session).to_owned()]);
+    rows.push(["gaps in the journal".to_owned(), holes(session)]);
     if let Some(pictures) = &session.pictures {
-        rows.push(vec!["endoscope images".to_owned(), of_pictures(pictures)]);
+        rows.push(["endoscope images".to_owned(), of_pictures(pictures)]);
     }
     let faults = of_level(session, MarkLevel::Error).count();
-    rows.push(vec!["faults".to_owned(), faults.to_string()]);
+    rows.push(["faults".to_owned(), faults.to_string()]);
     let marked: Vec<_> = of_level(session, MarkLevel::Mark).take(20).map(|mark| time(mark.t_s)).collect();
-    rows.push(vec!["operator marks".to_owned(), if marked.is_empty() { "none".into() } else { marked.join(", ") }]);
-    let mut out = format!(
-        "<section>\n<h2>Session</h2>\n{}",
-        table(&["", ""], &rows).replace("<table>", "<table class=\"about\">")
-    );
-    if session.about.contains_key(ANONYMOUS) {
-        out.push_str(
-            "<p class=\"note\">Anonymous session: names, devices, calibrations, the journal and the date were \
-             removed.</p>\n",
-        );
-    }
-    for note in &session.notes {
-        writeln!(out, "<p class=\"warning\">Note: {}</p>", escape(note)).ok();
-    }
-    for fault in of_level(session, MarkLevel::Error).take(10) {
-        writeln!(out, "<p class=\"error\">{}: {}</p>", time(fault.t_s), escape(&fault.words)).ok();
-    }
-    out.push_str("</section>\n");
-    out
+    let marked = if marked.is_empty() { "none".to_owned() } else { marked.join(", ") };
+    rows.push(["operator marks".to_owned(), marked]);
+    let body = html! {
+        table.about {
+            @for [what, value] in rows { tr { td { (what) } td { (value) } } }
+        }
+        @if session.about.contains_key(ANONYMOUS) {
+            p.note { "Anonymous session: names, devices, calibrations, the journal and the date were removed." }
+        }
+        @for note in &session.notes { p.warning { "Note: " (note) } }
+        @for fault in of_level(session, MarkLevel::Error).take(10) { p.error { (time(fault.t_s)) ": " (fault.words) } }
+    };
+    section("Session", &body)
 }
 
 fn end(session: &Figures) -> &'static str {
@@ -110,29 +102,25 @@ fn of_level(session: &Figures, level: MarkLevel) -> impl Iterator<Item = &Mark> 
 }
 
 /// Number of events of each kind, for the objects of the scene; empty without events.
-pub(super) fn happenings(session: &Figures) -> String {
-    let Some(happenings) = &session.happenings else { return String::new() };
-    let rows: Vec<_> =
-        happenings.iter().map(|(kind, count)| vec![escape(&kind.replace('_', " ")), count.to_string()]).collect();
-    let body = if rows.is_empty() { "<p>Nothing.</p>\n".to_owned() } else { table(&["what", "how often"], &rows) };
-    format!("<section>\n<h2>Events of the objects</h2>\n{body}</section>\n")
+pub(super) fn happenings(session: &Figures) -> Markup {
+    let Some(happenings) = &session.happenings else { return html! {} };
+    let rows: Vec<_> = happenings.iter().map(|(kind, count)| vec![kind.replace('_', " "), count.to_string()]).collect();
+    section("Events of the objects", &table_or(&["what", "how often"], &rows, "Nothing."))
 }
 
-pub(super) fn marks(session: &Figures) -> String {
-    let row = |mark: &Mark| vec![time(mark.t_s), mark.level.word().to_owned(), escape(&mark.words)];
+pub(super) fn marks(session: &Figures) -> Markup {
+    let row = |mark: &Mark| vec![time(mark.t_s), mark.level.word().to_owned(), mark.words.clone()];
     let rows: Vec<_> = session.marks.iter().take(MARKS).map(row).collect();
     let more = session.marks.len().saturating_sub(MARKS);
-    let more = if more == 0 { String::new() } else { format!("<p>{more} more are not listed; use --json</p>\n") };
-    let body = if rows.is_empty() {
-        "<p>No event and no command was recorded.</p>\n".to_owned()
-    } else {
-        table(&["time", "level", "what"], &rows)
+    let body = html! {
+        (table_or(&["time", "level", "what"], &rows, "No event and no command was recorded."))
+        @if more > 0 { p { (more) " more are not listed; use --json" } }
     };
-    format!("<section>\n<h2>Events</h2>\n{body}{more}</section>\n")
+    section("Events", &body)
 }
 
-pub(super) fn calibrations(session: &Figures) -> String {
-    let mut rows = Vec::new();
+pub(super) fn calibrations(session: &Figures) -> Markup {
+    let mut rows: Vec<Vec<Markup>> = Vec::new();
     for (of, table) in &session.calibrations {
         let whose = match of.as_str() {
             "right" | "left" => format!("{of}, from the start"),
@@ -142,30 +130,24 @@ pub(super) fn calibrations(session: &Figures) -> String {
         let (verdicts, others): (Vec<_>, Vec<_>) = table.iter().partition(|(key, _)| key.ends_with("_verdict"));
         for (key, value) in verdicts.into_iter().chain(others) {
             let known = CALIBRATIONS.iter().find(|(known, _)| known == key);
-            rows.push(vec![
-                escape(&whose),
-                known.map_or_else(|| escape(&key.replace('_', " ")), |(_, words)| (*words).to_owned()),
-                match value.parse::<f64>() {
-                    Ok(number) if known.is_some() && number.fract() != 0.0 => digits(number),
-                    _ => format!("<pre>{}</pre>", escape(value.trim())),
-                },
-            ]);
+            let what = known.map_or_else(|| key.replace('_', " "), |(_, words)| (*words).to_owned());
+            let value = match value.parse::<f64>() {
+                Ok(number) if known.is_some() && number.fract() != 0.0 => html! { (digits(number)) },
+                _ => html! { pre { (value.trim()) } },
+            };
+            rows.push(vec![html! { (whose) }, html! { (what) }, value]);
         }
         if table.is_empty() {
-            rows.push(vec![escape(&whose), "none".to_owned(), String::new()]);
+            rows.push(vec![html! { (whose) }, html! { "none" }, html! {}]);
         }
     }
-    let body = if rows.is_empty() {
-        "<p>The file has no tables of calibrations.</p>\n".to_owned()
-    } else {
-        table(&["for", "what", "value"], &rows)
-    };
-    format!("<section>\n<h2>Calibrations in use</h2>\n{body}</section>\n")
+    let body = table_or(&["for", "what", "value"], &rows, "The file has no tables of calibrations.");
+    section("Calibrations in use", &body)
 }
 
 /// Missed periods, and percentiles.
-pub(super) fn timing(session: &Figures) -> String {
-    let Some(timing) = &session.timing else { return String::new() };
+pub(super) fn timing(session: &Figures) -> Markup {
+    let Some(timing) = &session.timing else { return html! {} };
     let names = ["wake-up delay (us)", "work per tick (us)", "sample to force (us)"];
     let row = |(name, times): (&&str, &Option<[f64; 4]>)| {
         let times = times.map_or_else(|| [const { String::new() }; 4], |times| times.map(digits));
@@ -178,24 +160,21 @@ pub(super) fn timing(session: &Figures) -> String {
         .take(20)
         .map(|(until_s, missed)| format!("{missed} before {}", time(*until_s)))
         .collect();
-    let missed = if missed.is_empty() { String::new() } else { format!(": {}", missed.join(", ")) };
     let is_perfect = session.about.get("clock").is_some_and(|clock| clock == "virtual")
         && !session.about.contains_key("clock_profile");
-    let clock = if is_perfect { "<p class=\"note\">On the perfect virtual clock nothing is late.</p>\n" } else { "" };
-    format!(
-        "<section>\n<h2>Timing</h2>\n<p>Periods missed: {}{missed}</p>\n{}{clock}</section>\n",
-        timing.missed,
-        table(&["", "median", "99 %", "99.9 %", "largest"], &rows)
-    )
+    let body = html! {
+        p { "Periods missed: " (timing.missed) @if !missed.is_empty() { ": " (missed.join(", ")) } }
+        (table(&["", "median", "99 %", "99.9 %", "largest"], &rows))
+        @if is_perfect { p.note { "On the perfect virtual clock nothing is late." } }
+    };
+    section("Timing", &body)
 }
 
 /// One column per session.
-pub(super) fn comparison(sessions: &[Figures]) -> String {
-    let names: Vec<String> = sessions.iter().map(|session| escape(&name(session))).collect();
-    let heads: Vec<&str> = std::iter::once("").chain(names.iter().map(String::as_str)).collect();
-    let about = |key: &'static str| {
-        move |session: &Figures| session.about.get(key).map_or_else(|| "-".to_owned(), |value| escape(value))
-    };
+pub(super) fn comparison(sessions: &[Figures]) -> Markup {
+    let heads: Vec<String> = std::iter::once(String::new()).chain(sessions.iter().map(name)).collect();
+    let about =
+        |key: &'static str| move |session: &Figures| session.about.get(key).cloned().unwrap_or_else(|| "-".to_owned());
     let mut rows = vec![
         row("started (UTC)", sessions, about("started")),
         row("length", sessions, |session| time(session.length_s)),
@@ -221,7 +200,7 @@ const OF_ARM: [OfArm; 8] = [
     ("engaged (s)", |arm| Some(format!("{:.1}", arm.seconds[3]))),
     ("measured peak (N)", |arm| arm.forces[0].map(|force| digits(force.peak_n))),
     ("measured mean (N)", |arm| arm.forces[0].map(|force| digits(force.mean_n))),
-    ("force volume (N<sup>3</sup>)", |arm| arm.forces[0].map(|force| digits(force.volume_n3))),
+    ("force volume (N³)", |arm| arm.forces[0].map(|force| digits(force.volume_n3))),
     ("rendered peak (N)", |arm| arm.forces[2].map(|force| digits(force.peak_n))),
     ("rendered mean (N)", |arm| arm.forces[2].map(|force| digits(force.mean_n))),
     ("rendered rate RMS (N/s)", |arm| arm.forces[2].map(|force| digits(force.rate_rms_n_s))),

@@ -1,11 +1,10 @@
 //! Drawings of a session over time, as SVG.
 
-use std::fmt::Write as _;
-
+use maud::{Markup, html};
 use nima_charts::COLOURS;
 use nima_session::report::{ArmFigures, Figures, Mark, MarkLevel, STATES, Span, Trace};
 
-use super::html::escape;
+use super::html::drawing;
 
 const WIDTH: f64 = 960.0;
 const LEFT: f64 = 64.0;
@@ -31,18 +30,8 @@ pub(super) const STATE: [(&str, &str, bool); STATES] = [
     ("stopped", "#e69f00", true),
     ("fault", "#d55e00", true),
 ];
-const HATCH: &str = "<pattern id=\"hatch\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\">\
-    <rect width=\"2\" height=\"6\" fill=\"#000000\" fill-opacity=\"0.45\"/></pattern>";
-
 fn across(t_s: f64, length_s: f64) -> f64 {
     LEFT + (t_s / length_s.max(1e-3)).clamp(0.0, 1.0) * (WIDTH - LEFT - RIGHT)
-}
-
-fn begin(height: f64, name: &str) -> String {
-    format!(
-        "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{0}\" font-family=\"sans-serif\" font-size=\"12\">\n<title>{0}</title>\n",
-        escape(name)
-    )
 }
 
 /// A step of 1, 2 or 5 times a power of ten that divides a range into at most this many parts.
@@ -52,87 +41,82 @@ pub(crate) fn step(range: f64, parts: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= rough).unwrap_or(rough)
 }
 
-fn time_axis(out: &mut String, length_s: f64, top: f64, bottom: f64) {
+fn time_axis(length_s: f64, top: f64, bottom: f64) -> Markup {
     let step_s = step(length_s, 10.0);
     let decimals = (-step_s.log10().floor()).max(0.0) as usize;
-    let mut t_s = 0.0;
-    while t_s <= length_s + 1e-9 {
-        let x = across(t_s, length_s);
-        // Writing to a String cannot fail, here and below.
-        writeln!(out, "<path d=\"M{x:.1} {top}V{bottom}\" stroke=\"#cccccc\"/>").ok();
-        writeln!(out, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{t_s:.decimals$}</text>", bottom + 15.0).ok();
-        t_s += step_s;
+    let y = bottom + 15.0;
+    html! {
+        @for tick in 0..=((length_s + 1e-9) / step_s) as usize {
+            @let t_s = tick as f64 * step_s;
+            @let x = across(t_s, length_s);
+            path d=(format_args!("M{x:.1} {top}V{bottom}")) stroke="#cccccc" {}
+            text x=(format_args!("{x:.1}")) y=(y) text-anchor="middle" { (format_args!("{t_s:.decimals$}")) }
+        }
+        text x=(LEFT - 8.0) y=(y) text-anchor="end" { "time (s)" }
     }
-    writeln!(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">time (s)</text>", LEFT - 8.0, bottom + 15.0).ok();
 }
 
 /// Draws the states of an arm as a band, with a triangle at each warning and error, and a numbered line at each operator
 /// mark.
-pub(super) fn states(session: &Figures, arm: &ArmFigures) -> String {
+pub(super) fn states(session: &Figures, arm: &ArmFigures) -> Markup {
     let top = NUMBERS + 16.0;
     let bottom = top + BAND;
-    let mut out = begin(bottom + 22.0, &format!("States of the {} arm over time", arm.side));
-    writeln!(out, "<defs>{HATCH}</defs>").ok();
-    time_axis(&mut out, session.length_s, top, bottom);
-    gaps(&mut out, session.length_s, &arm.states, top);
-    for span in &arm.states {
-        let (name, colour, hatched) = STATE[usize::from(span.state).min(STATES - 1)];
-        let x = across(span.from_s, session.length_s);
-        let width = (across(span.to_s, session.length_s) - x).max(0.8);
-        for fill in [Some(colour), hatched.then_some("url(#hatch)")].into_iter().flatten() {
-            writeln!(out, "<rect x=\"{x:.1}\" y=\"{top}\" width=\"{width:.1}\" height=\"{BAND}\" fill=\"{fill}\"><title>{name}</title></rect>")
-                .ok();
+    let place = |t_s| across(t_s, session.length_s);
+    let (marks, alarms): (Vec<&Mark>, Vec<&Mark>) = session
+        .marks
+        .iter()
+        .filter(|mark| mark.level != MarkLevel::Info)
+        .partition(|mark| mark.level == MarkLevel::Mark);
+    let places: Vec<f64> = marks.iter().take(MARKS).map(|mark| place(mark.t_s)).collect();
+    let body = html! {
+        defs {
+            pattern id="hatch" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)" {
+                rect width="2" height="6" fill="#000000" fill-opacity="0.45" {}
+            }
         }
-    }
-    let is_mark = |mark: &&Mark| mark.level == MarkLevel::Mark;
-    for mark in session.marks.iter().filter(|mark| mark.level != MarkLevel::Info && !is_mark(mark)).take(MARKS) {
-        let x = across(mark.t_s, session.length_s);
-        let fill = if mark.level == MarkLevel::Error { "#000000" } else { "#ffffff" };
-        writeln!(
-            out,
-            "<path d=\"M{x:.1} {top}l-5 -11h10z\" fill=\"{fill}\" stroke=\"#000000\"><title>{}</title></path>",
-            escape(&mark.words)
-        )
-        .ok();
-    }
-    let marks: Vec<&Mark> = session.marks.iter().filter(is_mark).take(MARKS).collect();
-    for mark in &marks {
-        let x = across(mark.t_s, session.length_s);
-        writeln!(
-            out,
-            "<path d=\"M{x:.1} {NUMBERS}V{bottom}\" stroke=\"#000000\" stroke-width=\"2\"><title>{}</title></path>",
-            escape(&mark.words)
-        )
-        .ok();
-    }
-    let places: Vec<f64> = marks.iter().map(|mark| across(mark.t_s, session.length_s)).collect();
-    for (x, label) in labels(&places) {
-        let y = NUMBERS - 3.0;
-        writeln!(out, "<text x=\"{x:.1}\" y=\"{y}\" text-anchor=\"middle\" font-weight=\"bold\">{label}</text>").ok();
-    }
-    out.push_str("</svg>\n");
-    out
+        (time_axis(session.length_s, top, bottom))
+        @for [from_s, to_s] in gaps(session.length_s, &arm.states) {
+            rect x=(format_args!("{:.1}", place(from_s))) y=(top + 0.5) width=(width(place(from_s), place(to_s))) height=(BAND - 1.0)
+                fill="#ffffff" stroke="#444444" stroke-dasharray="3 2" { title { (NOT_RECORDED) } }
+        }
+        @for span in &arm.states {
+            @let (name, colour, hatched) = STATE[usize::from(span.state).min(STATES - 1)];
+            @for fill in [Some(colour), hatched.then_some("url(#hatch)")].into_iter().flatten() {
+                rect x=(format_args!("{:.1}", place(span.from_s))) y=(top) width=(width(place(span.from_s), place(span.to_s)))
+                    height=(BAND) fill=(fill) { title { (name) } }
+            }
+        }
+        @for alarm in alarms.iter().take(MARKS) {
+            @let fill = if alarm.level == MarkLevel::Error { "#000000" } else { "#ffffff" };
+            path d=(format_args!("M{:.1} {top}l-5 -11h10z", place(alarm.t_s))) fill=(fill) stroke="#000000" { title { (alarm.words) } }
+        }
+        @for (x, mark) in places.iter().zip(&marks) {
+            path d=(format_args!("M{x:.1} {NUMBERS}V{bottom}")) stroke="#000000" stroke-width="2" { title { (mark.words) } }
+        }
+        @for (x, label) in labels(&places) {
+            text x=(format_args!("{x:.1}")) y=(NUMBERS - 3.0) text-anchor="middle" font-weight="bold" { (label) }
+        }
+    };
+    drawing([WIDTH, bottom + 22.0], &format!("States of the {} arm over time", arm.side), &body)
 }
 
-/// Frames the gaps of the recording, so that they are not mistaken for a state.
-fn gaps(out: &mut String, length_s: f64, states: &[Span], top: f64) {
-    let mut before_s = 0.0;
+/// Width of what lies between two places; never so little that it cannot be seen.
+fn width(from: f64, to: f64) -> String {
+    format!("{:.1}", (to - from).max(0.8))
+}
+
+/// Beginning and end of each time in which nothing was recorded, so that nobody takes it for a state, s.
+fn gaps(length_s: f64, states: &[Span]) -> Vec<[f64; 2]> {
+    let mut before_s = 0.0_f64;
+    let mut gaps = Vec::new();
     let ends = states.iter().map(|span| (span.from_s, span.to_s));
     for (from_s, to_s) in ends.chain([(length_s, length_s)]) {
         if from_s - before_s > GAP_S {
-            let [x, end] = [before_s, from_s].map(|t_s| across(t_s, length_s));
-            writeln!(
-                out,
-                "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"#ffffff\" stroke=\"#444444\" \
-                 stroke-dasharray=\"3 2\"><title>{NOT_RECORDED}</title></rect>",
-                top + 0.5,
-                (end - x).max(0.8),
-                BAND - 1.0
-            )
-            .ok();
+            gaps.push([before_s, from_s]);
         }
         before_s = before_s.max(to_s);
     }
+    gaps
 }
 
 /// Positions and texts of the mark numbers; close marks share one label, such as 1-3.
@@ -153,45 +137,38 @@ fn labels(places: &[f64]) -> Vec<(f64, String)> {
 }
 
 /// Draws the magnitudes of the three forces, one above the other on the same scale.
-pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> String {
+pub(super) fn forces(session: &Figures, arm: &ArmFigures) -> Markup {
     let largest_n = arm.traces.iter().map(Trace::largest).fold(0.1, f64::max);
     let names = [("measured", COLOURS[4]), ("delayed", COLOURS[3]), ("rendered", COLOURS[0])];
-    let mut out = begin(3.0 * PLOT + 20.0, &format!("Forces of the {} arm over time", arm.side));
-    for (i, (trace, (name, colour))) in arm.traces.iter().zip(names).enumerate() {
-        let top = PLOT * i as f64 + 20.0;
-        let bottom = PLOT * (i + 1) as f64 - 6.0;
-        let up = |force_n: f64| bottom - force_n / (1.05 * largest_n) * (bottom - top);
-        let step_n = step(largest_n, 4.0);
-        let decimals = (-step_n.log10().floor()).max(0.0) as usize;
-        let mut force_n = 0.0;
-        while force_n <= 1.05 * largest_n {
-            let y = up(force_n);
-            writeln!(out, "<path d=\"M{LEFT} {y:.1}H{}\" stroke=\"#dddddd\"/>", WIDTH - RIGHT).ok();
-            writeln!(
-                out,
-                "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{force_n:.decimals$}</text>",
-                LEFT - 6.0,
-                y + 4.0
-            )
-            .ok();
-            force_n += step_n;
+    let step_n = step(largest_n, 4.0);
+    let decimals = (-step_n.log10().floor()).max(0.0) as usize;
+    let ends = 3.0 * PLOT - 6.0;
+    let body = html! {
+        @for (i, (trace, (name, colour))) in arm.traces.iter().zip(names).enumerate() {
+            @let top = PLOT * i as f64 + 20.0;
+            @let bottom = PLOT * (i + 1) as f64 - 6.0;
+            @let up = |force_n: f64| bottom - force_n / (1.05 * largest_n) * (bottom - top);
+            @for tick in 0..=(1.05 * largest_n / step_n) as usize {
+                @let force_n = tick as f64 * step_n;
+                path d=(format_args!("M{LEFT} {:.1}H{}", up(force_n), WIDTH - RIGHT)) stroke="#dddddd" {}
+                text x=(LEFT - 6.0) y=(format_args!("{:.1}", up(force_n) + 4.0)) text-anchor="end" { (format_args!("{force_n:.decimals$}")) }
+            }
+            text x=(LEFT) y=(top - 6.0) font-weight="bold" { (name) " (N)" }
+            path d=(path(trace, session.length_s, up)) stroke=(colour) stroke-width="1.7" fill="none" {}
         }
-        writeln!(out, "<text x=\"{LEFT}\" y=\"{}\" font-weight=\"bold\">{name} (N)</text>", top - 6.0).ok();
-        let mut path = String::new();
-        for (bucket, range) in trace.buckets.iter().enumerate() {
-            let Some([least_n, most_n]) = range else { continue };
-            let x = across((bucket as f64 + 0.5) * trace.step_s, session.length_s);
-            let high = up(*most_n);
-            let low = up(*least_n);
-            write!(path, "M{x:.1} {:.1}V{:.1}", high - 0.6, low + 0.6).ok();
-        }
-        writeln!(out, "<path d=\"{path}\" stroke=\"{colour}\" stroke-width=\"1.7\" fill=\"none\"/>").ok();
-        if i == 2 {
-            time_axis(&mut out, session.length_s, bottom, bottom);
-        }
-    }
-    out.push_str("</svg>\n");
-    out
+        (time_axis(session.length_s, ends, ends))
+    };
+    drawing([WIDTH, 3.0 * PLOT + 20.0], &format!("Forces of the {} arm over time", arm.side), &body)
+}
+
+/// A vertical line for each bucket of a trace, from its least to its largest force.
+fn path(trace: &Trace, length_s: f64, up: impl Fn(f64) -> f64) -> String {
+    let line = |(bucket, range): (usize, &Option<[f64; 2]>)| {
+        let [least_n, most_n] = (*range)?;
+        let x = across((bucket as f64 + 0.5) * trace.step_s, length_s);
+        Some(format!("M{x:.1} {:.1}V{:.1}", up(most_n) - 0.6, up(least_n) + 0.6))
+    };
+    trace.buckets.iter().enumerate().filter_map(line).collect()
 }
 
 #[cfg(test)]
@@ -209,13 +186,8 @@ mod tests {
     #[test]
     fn what_was_not_recorded_is_no_state() {
         let span = |from_s, to_s, state| Span { from_s, to_s, state };
-        let frames = |states: &[Span]| {
-            let mut out = String::new();
-            gaps(&mut out, 10.0, states, 0.0);
-            out.matches(NOT_RECORDED).count()
-        };
-        assert_eq!(frames(&[span(0.0, 4.0, 3), span(4.7, 10.0, 6)]), 1);
-        assert_eq!(frames(&[span(0.0, 4.0, 3), span(4.001, 10.0, 6)]), 0, "the next tick");
-        assert_eq!(frames(&[span(2.0, 4.0, 3)]), 2, "before and after");
+        assert_eq!(gaps(10.0, &[span(0.0, 4.0, 3), span(4.7, 10.0, 6)]), [[4.0, 4.7]]);
+        assert!(gaps(10.0, &[span(0.0, 4.0, 3), span(4.001, 10.0, 6)]).is_empty(), "the next tick");
+        assert_eq!(gaps(10.0, &[span(2.0, 4.0, 3)]), [[0.0, 2.0], [4.0, 10.0]], "before and after");
     }
 }

@@ -153,7 +153,7 @@ fn planted(session: &str, to: &Path) {
     writer.message(frames, begin_ns, &FrameTransforms { transforms: vec![frame, own_frame] }.encode_to_vec()).unwrap();
     let entity = SceneEntity { id: "right.forces".into(), frame_id: text(6), ..SceneEntity::default() };
     let arrows = writer.channel("arrows", foxglove::encoding::<SceneUpdate>()).unwrap();
-    let scene = SceneUpdate { entities: vec![entity] };
+    let scene = SceneUpdate { entities: vec![entity], ..SceneUpdate::default() };
     writer.message(arrows, begin_ns, &scene.encode_to_vec()).unwrap();
     for message in reader.messages(&[], 0..u64::MAX) {
         let message = message.unwrap();

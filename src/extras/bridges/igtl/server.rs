@@ -31,6 +31,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use nalgebra::Vector3;
 use nima_machine::{messages::LoopState, rig::SIDES};
 use nima_session::outlet::Audience;
+use tracing::{info, warn};
 
 pub use self::picture::Pictures;
 use self::{audience::Watching, client::Client, hub::Hub, moment::Told};
@@ -209,7 +210,8 @@ fn listen(listener: &TcpListener, shared: &Arc<Shared>) {
     let mut threads: Vec<JoinHandle<()>> = Vec::new();
     while !shared.is_ending() {
         match listener.accept() {
-            Ok((stream, _)) => {
+            Ok((stream, from)) => {
+                info!(%from, "a client connects");
                 take_in(stream, shared, &mut threads);
                 sleep(AFTER_CLIENT);
             }
@@ -232,6 +234,7 @@ fn take_in(stream: TcpStream, shared: &Arc<Shared>, threads: &mut Vec<JoinHandle
     clients.retain(|client| !client.is_gone());
     if clients.len() >= MOST_CLIENTS {
         drop(clients);
+        warn!("a client is refused: {MOST_CLIENTS} are connected");
         return client::refuse(&stream, MOST_CLIENTS);
     }
     let Ok(client) = Client::new(stream) else { return };
@@ -245,7 +248,8 @@ fn take_in(stream: TcpStream, shared: &Arc<Shared>, threads: &mut Vec<JoinHandle
     let hurried = Arc::clone(shared);
     let writes = begin("igtl-writer", Box::new(move || writer.write()));
     let reads = begin("igtl-reader", Box::new(move || reader.read(|| hurried.hurry(), &hurried.pictures)));
-    if writes.is_err() || reads.is_err() {
+    if let Err(error) = writes.as_ref().and(reads.as_ref()) {
+        warn!(%error, "a client is left: no thread");
         client.leave();
     }
     threads.extend([writes, reads].into_iter().flatten());

@@ -1,6 +1,6 @@
 //! The image of the rig's endoscope: both instruments of the simulated world at their true positions.
 
-use nima_endoscope::Address;
+use nima_endoscope::{Address, Endpoint};
 use nima_machine::{
     config::Endoscope,
     rig::{Settings, Side},
@@ -19,7 +19,7 @@ impl EmulatedRig {
     /// If the address is not on this computer, or its port is in use.
     pub fn show(&mut self, endoscope: &Endoscope, devices: &Settings, scene: &Scene) -> Result<(), EmulatedRigError> {
         let place = |wanted| EmulatedRigError::Place { device: NAME.to_owned(), place: endoscope.url.clone(), wanted };
-        let Ok(Address::Http { host, port, .. }) = endoscope.url.parse() else {
+        let Ok(Address::Http(Endpoint { host, port, .. })) = endoscope.url.parse() else {
             return Err(place("give the endoscope of an emulated rig url = \"http://127.0.0.1:PORT/\""));
         };
         places::local(NAME, &host)?;

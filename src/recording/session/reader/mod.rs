@@ -1,4 +1,7 @@
 //! Reads a session, written by this or another program.
+//!
+//! Not with the indexed reader of the crate `mcap` (0.26), which checks no checksum of a chunk and believes the length that it claims: of 17 112 bits of
+//! a chunk, flipped one by one, 15 704 went unnoticed, 1355 made it panic, and 53 ended the reading.
 
 mod chunk;
 mod contents;

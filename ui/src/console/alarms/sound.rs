@@ -1,7 +1,7 @@
 //! Sound of alarms, off by default: bursts of pulses as in IEC 60601-1-8, ten for high priority, three for medium.
 //!
-//! An installed program (`pw-play`, `paplay` or `aplay`) plays them, so no library is needed. The menu shows if none is
-//! installed or it fails. Nothing here blocks: a burst is a child process that is checked in each frame.
+//! Played by a program of the system, so that no library is needed. If there is none, or it fails, the menu shows that. Nothing
+//! here waits: a burst is a child process that is checked in each frame.
 
 use crate::console::text;
 use std::{
@@ -15,8 +15,20 @@ use tempfile::TempDir;
 
 use super::Priority;
 
-/// Programs that take a file path as their only argument, the most common first.
-const PLAYERS: [&str; 3] = ["pw-play", "paplay", "aplay"];
+/// Programs that play the file that their last argument names, the most common first.
+const PLAYERS: &[&str] = if cfg!(windows) {
+    &["powershell.exe"]
+} else if cfg!(target_os = "macos") {
+    &["afplay"]
+} else {
+    &["pw-play", "paplay", "aplay"]
+};
+/// What stands before the file.
+const ARGUMENTS: &[&str] = if cfg!(windows) {
+    &["-NoProfile", "-Command", "& { (New-Object Media.SoundPlayer $args[0]).PlaySync() }"]
+} else {
+    &[]
+};
 const RATE_HZ: u32 = 22_050;
 /// Interval between the starts of two bursts of high priority, s.
 const HIGH_EVERY_S: f64 = 6.0;
@@ -90,7 +102,9 @@ impl Sound {
             None => bursts()?,
         };
         let file = self.bursts.insert(folder).path().join(file_of(priority));
-        Command::new(player).arg(file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
+        let mut command = Command::new(player);
+        command.args(ARGUMENTS).arg(file);
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
     }
 }
 

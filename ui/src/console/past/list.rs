@@ -14,7 +14,9 @@ use nima_session::{
 
 use super::job::Job;
 use crate::console::{
-    chain, text, theme,
+    chain,
+    picking::Picking,
+    text, theme,
     widgets::{small, weak},
 };
 use crate::language;
@@ -33,6 +35,7 @@ pub(crate) struct List {
     asked: Option<PathBuf>,
     job: Option<Job>,
     told: Option<String>,
+    picking: Option<Picking>,
 }
 
 #[derive(Debug)]
@@ -92,13 +95,23 @@ impl List {
     /// Draws the page; returns the session to open.
     pub(crate) fn ui(&mut self, ui: &mut Ui) -> Option<PathBuf> {
         self.take_in();
-        let mut wish = None;
+        let mut wish = Picking::take(&mut self.picking).map(Wish::Open);
         let frame = Frame::new().inner_margin(Margin::symmetric(18, 14));
         CentralPanel::default().frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
                 let back = Button::new(text::past::BACK.get()).min_size(vec2(150.0, 36.0));
                 if ui.add(back).clicked() {
                     self.is_open = false;
+                }
+                let elsewhere = Button::new(text::past::ELSEWHERE.get()).min_size(vec2(150.0, 36.0));
+                if ui
+                    .add_enabled(self.picking.is_none(), elsewhere)
+                    .on_hover_text(text::past::ELSEWHERE_HOVER.get())
+                    .clicked()
+                {
+                    let kind = [text::past::SESSIONS.get(), "mcap"];
+                    let folder = self.folder.as_deref();
+                    self.picking = Some(Picking::open(ui.ctx(), text::past::ELSEWHERE.get(), kind, folder));
                 }
                 ui.add_space(8.0);
                 let heading = if self.for_beside { text::past::BESIDE.get() } else { text::past::LIST.get() };

@@ -23,6 +23,7 @@ use welcome::Welcome;
 
 use super::{
     live::Live,
+    picking::Picking,
     text, theme,
     widgets::{Sign, card, next_button, sign_ui, small, weak},
 };
@@ -49,6 +50,7 @@ pub struct StartPage {
     endoscope: EndoscopeCard,
     /// The chosen rig's file may have changed.
     is_stale: bool,
+    picking: Option<Picking>,
 }
 
 /// Input for drawing the page.
@@ -81,6 +83,7 @@ impl StartPage {
             answers: Answers::default(),
             endoscope: EndoscopeCard::default(),
             is_stale: true,
+            picking: None,
         }
     }
 
@@ -166,7 +169,19 @@ impl StartPage {
                     }
                 }
             }
+            let elsewhere = Button::new(text::start::ELSEWHERE.get()).min_size(vec2(ui.available_width(), 32.0));
+            let elsewhere = ui.add_enabled(self.picking.is_none(), elsewhere);
+            if elsewhere.on_hover_text(text::start::ELSEWHERE_HOVER.get()).clicked() {
+                let kind = [text::start::RIG_FILES.get(), "toml"];
+                let folder = self.folder.as_deref();
+                self.picking = Some(Picking::open(ui.ctx(), text::start::ELSEWHERE.get(), kind, folder));
+            }
         });
+        if let Some(path) = Picking::take(&mut self.picking) {
+            let picked = self.chosen.with_rig(&path.display().to_string());
+            self.read(now.running, &[now.recent, std::slice::from_ref(&picked)].concat());
+            chosen = Some(picked);
+        }
         if let Some(chosen) = chosen {
             self.choose(chosen);
         }

@@ -55,6 +55,11 @@ pub(in crate::console) const DELETE_NOW: Text = Text::of("Delete it?", "Löschen
 pub(in crate::console) const DELETE_NOW_HOVER: Text =
     Text::of("Deletes the file permanently", "Löscht die Datei endgültig");
 pub(in crate::console) const BACK: Text = Text::of("Back to the view", "Zurück zur Ansicht");
+pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file...", "Datei öffnen...");
+pub(in crate::console) const ELSEWHERE_HOVER: Text = Text::of(
+    "Opens a session from any folder; the list has only those in yours",
+    "Öffnet eine Sitzung aus einem beliebigen Ordner; die Liste enthält nur die in Ihrem",
+);
 pub(in crate::console) const REPORTING: Text = Text::of("Writing the report", "Bericht wird geschrieben");
 pub(in crate::console) const CUTTING: Text = Text::of("Saving the excerpt", "Ausschnitt wird gespeichert");
 pub(in crate::console) const NO_THREAD: Text =

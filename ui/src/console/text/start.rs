@@ -36,6 +36,11 @@ pub(in crate::console) const PLUGGED_HOVER: Text = Text::of(
 pub(in crate::console) const RECENT: Text = Text::of("Recent", "Zuletzt");
 pub(in crate::console) const BUILT_IN: Text = Text::of("Built in", "Eingebaut");
 pub(in crate::console) const YOURS: Text = Text::of("Yours", "Eigene");
+pub(in crate::console) const ELSEWHERE: Text = Text::of("Open file...", "Datei öffnen...");
+pub(in crate::console) const ELSEWHERE_HOVER: Text =
+    Text::of("Chooses a rig file from any folder", "Wählt eine Aufbaudatei aus einem beliebigen Ordner");
+/// The kind of file in the system's dialog.
+pub(in crate::console) const RIG_FILES: Text = Text::of("Rig files", "Aufbaudateien");
 pub(in crate::console) const NEW_NAME: Text = Text::of("Name of a new rig", "Name des neuen Aufbaus");
 pub(in crate::console) const MAKE: Text = Text::of("Copy the chosen rig", "Gewählten Aufbau kopieren");
 pub(in crate::console) const MAKE_HOVER: Text = Text::of(

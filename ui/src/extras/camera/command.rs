@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let address: Address = arguments.source.parse()?;
     let taken = match &address {
         Address::File(folder) => of_folder(folder, &board)?,
-        Address::Http { .. } | Address::Rtsp { .. } | Address::Camera { .. } => of_camera(address, board)?,
+        Address::Http(_) | Address::Rtsp(_) | Address::Camera { .. } => of_camera(address, board)?,
     };
     let views: Vec<Sight> = taken.views.iter().map(|(_, view)| view.clone()).collect();
     let report = calibrate(&board, taken.size_px, &views);

@@ -193,6 +193,7 @@ fn listen(rig: Rig, own: &Identity, address: &str, teller: &Teller) {
         match heard {
             Ok(()) => return,
             Err(why) => {
+                tracing::warn!("{why:#}");
                 if !teller.tell(Heard::Trouble(format!("{why:#}"))) {
                     return;
                 }

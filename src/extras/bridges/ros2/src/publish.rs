@@ -1,33 +1,36 @@
-//! The writers of the topics.
+//! The node and the writers of its topics.
 
 use std::{collections::BTreeMap, net::Ipv4Addr};
 
-use rustdds::{
-    DomainParticipant, DomainParticipantBuilder, QosPolicies, QosPolicyBuilder, TopicKind,
-    no_key::DataWriter,
-    policy::{Durability, History, Reliability},
+use ros2_client::{
+    Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher as Writer, QosProfile,
+    dds::rustdds::DomainParticipantBuilder,
+    qos::{Durability, History, WhenFull},
 };
 use serde::Serialize;
 
 use crate::topics::{Data, OperatingState, PoseStamped, Sample, Side, Topic, WrenchStamped};
 
-enum Writer {
-    Pose(DataWriter<PoseStamped>),
-    Wrench(DataWriter<WrenchStamped>),
-    State(DataWriter<OperatingState>),
+/// Name of the node.
+const NODE: &str = "nima_bridge_ros2";
+
+enum OfTopic {
+    Pose(Writer<PoseStamped>),
+    Wrench(Writer<WrenchStamped>),
+    State(Writer<OperatingState>),
 }
 
 pub struct Publisher {
-    writers: BTreeMap<(Side, Topic), Writer>,
+    writers: BTreeMap<(Side, Topic), OfTopic>,
     /// Dropping it ends the publication.
-    _participant: DomainParticipant,
+    _node: Node,
 }
 
 /// Reliable, so that it matches readers of either kind; only the newest sample is kept, so that no reader waits for old
 /// ones.
-fn usual() -> QosPolicyBuilder {
-    QosPolicyBuilder::new()
-        .reliability(Reliability::Reliable { max_blocking_time: rustdds::Duration::ZERO })
+fn usual() -> QosProfile {
+    QosProfile::publisher_default()
+        .reliability_reliable(WhenFull::Fail)
         .history(History::KeepLast { depth: 1 })
 }
 
@@ -39,14 +42,18 @@ impl Publisher {
             builder = builder.with_only_networks(networks.iter().copied());
         }
         let participant = builder.build().map_err(|error| error.to_string())?;
-        let writers =
-            Side::ALL.into_iter().flat_map(|side| Topic::ALL.map(|topic| (side, topic))).map(|(side, topic)| {
-                // ROS 2's naming of topics and types in DDS.
-                let name = format!("rt/{namespace}/{}/{}", side.word(), topic.name());
-                Ok(((side, topic), writer(&participant, &name, topic)?))
-            });
-        let writers = writers.collect::<Result<_, String>>()?;
-        Ok(Self { writers, _participant: participant })
+        let context = Context::from_domain_participant(participant).map_err(|error| error.to_string())?;
+        let name = NodeName::new(&format!("/{namespace}"), NODE).map_err(|error| error.to_string())?;
+        // It publishes, and nothing else: without a spinner and these services it hears nobody.
+        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
+        let mut node = context.new_node(name, options).map_err(|error| error.to_string())?;
+        let mut writers = BTreeMap::new();
+        for (side, topic) in Side::ALL.into_iter().flat_map(|side| Topic::ALL.map(|topic| (side, topic))) {
+            let name = Name::new(&format!("/{namespace}/{}", side.word()), topic.name());
+            let name = name.map_err(|error| error.to_string())?;
+            writers.insert((side, topic), of_topic(&mut node, &name, topic)?);
+        }
+        Ok(Self { writers, _node: node })
     }
 
     /// Publishes samples. A sample that cannot be written now is superseded by the next one.
@@ -58,38 +65,33 @@ impl Publisher {
 
     fn write(&self, sample: &Sample) {
         match (self.writers.get(&(sample.side, sample.topic)), &sample.data) {
-            (Some(Writer::Pose(writer)), Data::Pose(pose)) => drop(writer.write(pose.clone(), None)),
-            (Some(Writer::Wrench(writer)), Data::Wrench(wrench)) => drop(writer.write(wrench.clone(), None)),
-            (Some(Writer::State(writer)), Data::State(state)) => drop(writer.write(state.clone(), None)),
+            (Some(OfTopic::Pose(writer)), Data::Pose(pose)) => drop(writer.publish(pose.clone())),
+            (Some(OfTopic::Wrench(writer)), Data::Wrench(wrench)) => drop(writer.publish(wrench.clone())),
+            (Some(OfTopic::State(writer)), Data::State(state)) => drop(writer.publish(state.clone())),
             _ => {}
         }
     }
 }
 
-fn writer(participant: &DomainParticipant, name: &str, topic: Topic) -> Result<Writer, String> {
+fn of_topic(node: &mut Node, name: &Name, topic: Topic) -> Result<OfTopic, String> {
     Ok(match topic {
         Topic::MeasuredCp | Topic::SetpointCp => {
-            Writer::Pose(of_type(participant, name, "geometry_msgs::msg::dds_::PoseStamped_", &usual().build())?)
+            OfTopic::Pose(writer(node, name, ["geometry_msgs", "PoseStamped"], usual())?)
         }
         Topic::MeasuredCf | Topic::RenderedCf => {
-            Writer::Wrench(of_type(participant, name, "geometry_msgs::msg::dds_::WrenchStamped_", &usual().build())?)
+            OfTopic::Wrench(writer(node, name, ["geometry_msgs", "WrenchStamped"], usual())?)
         }
         // A late reader gets the state at once.
         Topic::OperatingState => {
-            let qos = usual().durability(Durability::TransientLocal).build();
-            Writer::State(of_type(participant, name, "crtk_msgs::msg::dds_::OperatingState_", &qos)?)
+            let qos = usual().durability(Durability::TransientLocal);
+            OfTopic::State(writer(node, name, ["crtk_msgs", "OperatingState"], qos)?)
         }
     })
 }
 
-fn of_type<D: Serialize>(
-    participant: &DomainParticipant,
-    name: &str,
-    kind: &str,
-    qos: &QosPolicies,
-) -> Result<DataWriter<D>, String> {
-    let publisher = participant.create_publisher(qos).map_err(|error| error.to_string())?;
-    let topic = participant.create_topic(name.to_owned(), kind.to_owned(), qos, TopicKind::NoKey);
+fn writer<D: Serialize>(node: &mut Node, name: &Name, kind: [&str; 2], qos: QosProfile) -> Result<Writer<D>, String> {
+    let [package, kind] = kind;
+    let topic = node.create_topic(name, MessageTypeName::new(package, kind), &qos);
     let topic = topic.map_err(|error| error.to_string())?;
-    publisher.create_datawriter_no_key_cdr(&topic, None).map_err(|error| error.to_string())
+    node.create_publisher(&topic, None).map_err(|error| error.to_string())
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nima_endoscope::{Picture, jpeg, time_code};
 use nima_recording::{
-    messages::foxglove::{CompressedImage, CompressedVideo, Timestamp, encoding},
+    messages::foxglove::{CompressedImage, CompressedVideo, encoding, timestamp},
     session::{Encoding, Writer},
 };
 use nima_session::pictures::{PICTURE_TOPIC, VIDEO_TOPIC};
@@ -38,18 +38,18 @@ fn with_pictures(from: &Path, to: &Path, damaged: u64) -> u64 {
         if number == damaged {
             data.truncate(data.len() / 2);
         }
-        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let timestamp = Some(timestamp(time_ns));
         let frame_id = "endoscope".to_owned();
-        CompressedImage { timestamp, data, format: "jpeg".to_owned(), frame_id }.encode_to_vec()
+        CompressedImage { timestamp, data: data.into(), format: "jpeg".to_owned(), frame_id }.encode_to_vec()
     })
 }
 
 /// Like [`with_pictures`], as a stream whose images come from `coded`.
 fn with_stream(from: &Path, to: &Path, mut coded: impl FnMut(u64, u64) -> Vec<u8>) -> u64 {
     with_messages(from, to, VIDEO_TOPIC, encoding::<CompressedVideo>(), |number, time_ns| {
-        let timestamp = Some(Timestamp::of_ns(time_ns));
+        let timestamp = Some(timestamp(time_ns));
         let frame_id = "endoscope".to_owned();
-        let data = coded(number, time_ns);
+        let data = coded(number, time_ns).into();
         CompressedVideo { timestamp, frame_id, data, format: "h264".to_owned() }.encode_to_vec()
     })
 }

@@ -1,12 +1,13 @@
 //! Box plots of a measure, one box per condition.
 
-use std::{collections::BTreeMap, fmt::Write as _};
+use std::collections::BTreeMap;
 
+use maud::{Markup, html};
 use nima_analysis::Summary;
 use nima_charts::COLOURS;
 use nima_study::trials::Table;
 
-use crate::report::{html::escape, plots::step};
+use crate::report::{html::drawing, plots::step};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 260.0;
@@ -19,74 +20,56 @@ const HALF_BOX: f64 = 28.0;
 const REACH: f64 = 1.5;
 
 /// The means of the participants under each condition, in this order; empty without values.
-pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) -> String {
+pub(super) fn svg(table: &Table, measure: &str, order: &[String], axis: &str) -> Markup {
     let groups: Vec<(&String, Vec<f64>)> =
         order.iter().map(|name| (name, means(table, measure, name))).filter(|(_, values)| !values.is_empty()).collect();
     let all: Vec<f64> = groups.iter().flat_map(|(_, values)| values.iter().copied()).collect();
-    let Ok(whole) = Summary::of(&all) else { return String::new() };
+    let Ok(whole) = Summary::of(&all) else { return html! {} };
     let [low, high] = whole.extremes;
     let room = 0.05 * if high > low { high - low } else { high.abs().max(1.0) };
     let low = low - room;
     let high = high + room;
     let down = |value: f64| HEIGHT - BOTTOM - (value - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
-    let title = escape(&format!("{axis} under each condition"));
-    let mut out = format!(
-        "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\" font-family=\"sans-serif\" font-size=\"12\" \
-         style=\"max-width: {WIDTH}px\">\n<title>{title}</title>\n"
-    );
-    let apart = step(high - low, 5.0);
-    let decimals = (-apart.log10().floor()).max(0.0) as usize;
-    for mark in (low / apart).ceil() as i64..=(high / apart).floor() as i64 {
-        let value = mark as f64 * apart;
-        let y = down(value);
-        // Writing to a String cannot fail, here and below.
-        writeln!(out, "<path d=\"M{LEFT} {y:.1}H{}\" stroke=\"#dddddd\"/>", WIDTH - RIGHT).ok();
-        writeln!(out, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{value:.decimals$}</text>", LEFT - 6.0, y + 4.0)
-            .ok();
-    }
+    let mark = step(high - low, 5.0);
+    let decimals = (-mark.log10().floor()).max(0.0) as usize;
     let middle = f64::midpoint(TOP, HEIGHT - BOTTOM);
-    writeln!(
-        out,
-        "<text transform=\"translate(16 {middle:.0}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-        escape(axis)
-    )
-    .ok();
     let apart = (WIDTH - LEFT - RIGHT) / groups.len() as f64;
-    for (at, (name, values)) in groups.iter().enumerate() {
-        let x = LEFT + (at as f64 + 0.5) * apart;
-        group(&mut out, x, values, COLOURS[at % COLOURS.len()], down);
-        let label = escape(&format!("{name} (n = {})", values.len()));
-        writeln!(out, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", HEIGHT - 12.0).ok();
-    }
-    out.push_str("</svg>\n");
-    out
+    let body = html! {
+        @for number in (low / mark).ceil() as i64..=(high / mark).floor() as i64 {
+            @let value = number as f64 * mark;
+            @let y = down(value);
+            path d=(format_args!("M{LEFT} {y:.1}H{}", WIDTH - RIGHT)) stroke="#dddddd" {}
+            text x=(LEFT - 6.0) y=(format_args!("{:.1}", y + 4.0)) text-anchor="end" { (format_args!("{value:.decimals$}")) }
+        }
+        text transform=(format_args!("translate(16 {middle:.0}) rotate(-90)")) text-anchor="middle" { (axis) }
+        @for (at, (name, values)) in groups.iter().enumerate() {
+            @let x = LEFT + (at as f64 + 0.5) * apart;
+            (group(x, values, COLOURS[at % COLOURS.len()], down))
+            text x=(format_args!("{x:.1}")) y=(HEIGHT - 12.0) text-anchor="middle" { (name) " (n = " (values.len()) ")" }
+        }
+    };
+    drawing([WIDTH, HEIGHT], &format!("{axis} under each condition"), &body)
 }
 
-fn group(out: &mut String, x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) {
-    let Ok(Summary { quartiles: [first, third], median, .. }) = Summary::of(values) else { return };
+fn group(x: f64, values: &[f64], colour: &str, down: impl Fn(f64) -> f64) -> Markup {
+    let Ok(Summary { quartiles: [first, third], median, .. }) = Summary::of(values) else { return html! {} };
     let reach = REACH * (third - first);
     let within = values.iter().copied().filter(|value| (first - reach..=third + reach).contains(value));
     let (least, most) = within.fold((first, third), |(least, most), value| (least.min(value), most.max(value)));
     let top = down(third);
     let bottom = down(first);
     let left = x - HALF_BOX;
-    writeln!(
-        out,
-        "<path d=\"M{x:.1} {:.1}V{top:.1}M{x:.1} {bottom:.1}V{:.1}\" stroke=\"{colour}\"/>\
-         <rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{}\" height=\"{:.1}\" fill=\"{colour}\" fill-opacity=\"0.2\" stroke=\"{colour}\"/>\
-         <path d=\"M{left:.1} {:.1}h{}\" stroke=\"{colour}\" stroke-width=\"2.5\"/>",
-        down(most),
-        down(least),
-        2.0 * HALF_BOX,
-        bottom - top,
-        down(median),
-        2.0 * HALF_BOX
-    )
-    .ok();
-    for (place, value) in values.iter().enumerate() {
-        // Next to the box, in columns, so that equal values remain visible.
-        let aside = HALF_BOX + 8.0 + 5.0 * (place % 4) as f64;
-        writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"2.5\" fill=\"{colour}\"/>", x + aside, down(*value)).ok();
+    let width = 2.0 * HALF_BOX;
+    html! {
+        path d=(format_args!("M{x:.1} {:.1}V{top:.1}M{x:.1} {bottom:.1}V{:.1}", down(most), down(least))) stroke=(colour) {}
+        rect x=(format_args!("{left:.1}")) y=(format_args!("{top:.1}")) width=(width) height=(format_args!("{:.1}", bottom - top))
+            fill=(colour) fill-opacity="0.2" stroke=(colour) {}
+        path d=(format_args!("M{left:.1} {:.1}h{width}", down(median))) stroke=(colour) stroke-width="2.5" {}
+        @for (place, value) in values.iter().enumerate() {
+            // Next to the box, in columns, so that equal values remain visible.
+            @let aside = HALF_BOX + 8.0 + 5.0 * (place % 4) as f64;
+            circle cx=(format_args!("{:.1}", x + aside)) cy=(format_args!("{:.1}", down(*value))) r="2.5" fill=(colour) {}
+        }
     }
 }
 
@@ -121,12 +104,12 @@ mod tests {
         let table = Table { measures: vec!["time_s".to_owned()], trials };
         let order = ["A", "B", "C"].map(str::to_owned);
         assert_eq!(means(&table, "time_s", "A"), [2.0, 5.0]);
-        let picture = svg(&table, "time_s", &order, "time_s (s)");
+        let picture = svg(&table, "time_s", &order, "time_s (s)").into_string();
         assert_eq!((picture.matches("<rect").count(), picture.matches("<circle").count()), (2, 3), "{picture}");
         assert!(
             picture.contains("A (n = 2)") && picture.contains("B (n = 1)") && !picture.contains("NaN"),
             "{picture}"
         );
-        assert_eq!(svg(&table, "absent", &order, "absent"), "");
+        assert_eq!(svg(&table, "absent", &order, "absent").into_string(), "");
     }
 }

@@ -8,11 +8,11 @@ mod people;
 
 use std::{
     collections::BTreeSet,
-    fmt::Write as _,
     path::{Path, PathBuf},
 };
 
 use anyhow::Context as _;
+use maud::{Markup, html};
 use nima_core::Side;
 use nima_score::{Definition, MEASURES};
 use nima_study::{
@@ -23,10 +23,7 @@ use nima_user_study::{Label, Study};
 
 use crate::{
     command::output,
-    report::{
-        STYLE,
-        html::{escape, table},
-    },
+    report::html::{self, section, table},
 };
 
 pub(super) const PAGE: &str = "report.html";
@@ -111,83 +108,69 @@ fn page(
     scores: Option<&Analysed>,
 ) -> String {
     let plan = study.plan();
-    let name = escape(&plan.name);
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{name}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <h1>{name}</h1>\n<p class=\"note\">NIMA Console, research use only.</p>\n"
-    );
-    if study.state().is_simulated() {
-        page.push_str(
-            "<p class=\"error\">Simulated: this study contains trials or answers of simulated people. It is not \
-             evidence about real people.</p>\n",
-        );
-    }
-    page.push_str(&conditions(study));
-    page.push_str(&people::participants(study));
-    page.push_str(&people::left_out(trials));
-    section(&mut page, "Primary measure", study, measures, |key| key == plan.primary);
-    section(&mut page, "Further measures", study, measures, |key| key != plan.primary);
-    section(&mut page, "Questionnaires", study, scores, |_| true);
-    page.push_str(&people::remarks(study));
-    page.push_str(&people::learning(study));
-    page.push_str(&methods(measures, scores));
-    page.push_str("</body>\n</html>\n");
-    page
+    let body = html! {
+        p.note { "NIMA Console, research use only." }
+        @if study.state().is_simulated() {
+            p.error { "Simulated: this study contains trials or answers of simulated people. It is not evidence about real people." }
+        }
+        (conditions(study))
+        (people::participants(study))
+        (people::left_out(trials))
+        (compared("Primary measure", study, measures, |key| key == plan.primary))
+        (compared("Further measures", study, measures, |key| key != plan.primary))
+        (compared("Questionnaires", study, scores, |_| true))
+        (people::remarks(study))
+        (people::learning(study))
+        (methods(measures, scores))
+    };
+    html::page(&plan.name, &body)
 }
 
 /// Blindness of the study, and its conditions.
-fn conditions(study: &Study) -> String {
+fn conditions(study: &Study) -> Markup {
     let plan = study.plan();
+    let row = |(label, name): (Label, &str)| {
+        let condition = study.opened().and_then(|opened| opened.condition(label));
+        let mode = condition.map_or_else(String::new, |one| match one.mode {
+            Some(mode) => format!("{mode}, gain {}", one.gain.unwrap_or(1.0)),
+            None => "no force".to_owned(),
+        });
+        let delay = condition.and_then(|one| one.delay_ms);
+        let delay = delay.map_or_else(|| "-".to_owned(), |delay_ms| format!("{delay_ms} ms"));
+        vec![label.to_string(), name.to_owned(), mode, delay]
+    };
+    let body = html! {
+        (blinding(study))
+        p.note { "Commitment to the assignment (BLAKE2b-256): " code { (plan.commitment) } }
+        @if let Some(opened) = study.opened() {
+            @let rows: Vec<_> = opened.labels().map(row).collect();
+            (table(&["label", "condition", "feedback", "delay"], &rows))
+        }
+    };
+    section("Conditions", &body)
+}
+
+fn blinding(study: &Study) -> Markup {
     let state = study.state();
-    let mut text = "<section>\n<h2>Conditions</h2>\n".to_owned();
-    match (&state.unblinding, plan.blind) {
-        (_, false) => text.push_str("<p>The study is not blind.</p>\n"),
-        (None, true) => text.push_str(
-            "<p class=\"warning\">Blind: the conditions are shown by their labels. They are compared with the \
-             first label. Measures that would reveal the condition are left out until unblinding.</p>\n",
-        ),
-        (Some(by), true) => {
-            let after = state.results() - by.trials_before.min(state.results());
-            let [who, why, at] = [&by.who, &by.why, &by.at].map(|words| escape(words));
-            let when = if by.complete {
-                "after all participants had finished"
-            } else {
-                "before all participants had finished"
-            };
-            writeln!(
-                text,
-                "<p class=\"{}\">Unblinded by {who} at {at}, {when}: {why}. Trials with a result after that: {after}.</p>",
-                if by.complete && after == 0 { "note" } else { "warning" }
-            )
-            .ok();
+    if !study.plan().blind {
+        return html! { p { "The study is not blind." } };
+    }
+    let Some(by) = &state.unblinding else {
+        return html! {
+            p.warning {
+                "Blind: the conditions are shown by their labels. They are compared with the first label. \
+                 Measures that would reveal the condition are left out until unblinding."
+            }
+        };
+    };
+    let after = state.results() - by.trials_before.min(state.results());
+    let when = if by.complete { "after all participants had finished" } else { "before all participants had finished" };
+    let class = if by.complete && after == 0 { "note" } else { "warning" };
+    html! {
+        p class=(class) {
+            "Unblinded by " (by.who) " at " (by.at) ", " (when) ": " (by.why) ". Trials with a result after that: " (after) "."
         }
     }
-    writeln!(
-        text,
-        "<p class=\"note\">Commitment to the assignment (BLAKE2b-256): <code>{}</code></p>",
-        plan.commitment
-    )
-    .ok();
-    if let Some(opened) = study.opened() {
-        let row = |(label, name): (Label, &str)| {
-            let condition = opened.condition(label);
-            let mode = condition.map_or_else(String::new, |one| match one.mode {
-                Some(mode) => format!("{mode}, gain {}", one.gain.unwrap_or(1.0)),
-                None => "no force".to_owned(),
-            });
-            let delay = condition
-                .and_then(|one| one.delay_ms)
-                .map_or_else(|| "-".to_owned(), |delay_ms| format!("{delay_ms} ms"));
-            vec![label.to_string(), escape(name), mode, delay]
-        };
-        text.push_str(&table(
-            &["label", "condition", "feedback", "delay"],
-            &opened.labels().map(row).collect::<Vec<_>>(),
-        ));
-    }
-    text.push_str("</section>\n");
-    text
 }
 
 fn definition(key: &str) -> Option<&'static Definition> {
@@ -199,56 +182,52 @@ fn definition(key: &str) -> Option<&'static Definition> {
 }
 
 /// The tables and the plot of each measure that passes a filter.
-fn section(page: &mut String, title: &str, study: &Study, analysed: Option<&Analysed>, filter: impl Fn(&str) -> bool) {
-    writeln!(page, "<section>\n<h2>{title}</h2>").ok();
+fn compared(title: &str, study: &Study, analysed: Option<&Analysed>, filter: impl Fn(&str) -> bool) -> Markup {
     let Some(Analysed { table, report, absent }) = analysed else {
-        page.push_str("<p>Nothing to compare yet.</p>\n</section>\n");
-        return;
+        return section(title, &html! { p { "Nothing to compare yet." } });
     };
     let order: Vec<String> = match study.opened() {
         Some(opened) => opened.labels().map(|(_, name)| name.to_owned()).collect(),
         None => study.plan().labels.iter().map(ToString::to_string).collect(),
     };
     let text = report.text();
-    for part in text.split("\n## ").skip(1) {
-        let (name, tables) = part.split_once('\n').unwrap_or((part, ""));
-        if !filter(name) {
-            continue;
-        }
-        let about = definition(name);
-        writeln!(page, "<h3>{}</h3>", escape(name)).ok();
-        if let Some(definition) = about {
-            let unit = if definition.unit == "1" { "a ratio" } else { definition.unit };
-            writeln!(page, "<p class=\"note\">{} ({})</p>", escape(definition.words), escape(unit)).ok();
-        }
-        let unit = about.map(|definition| definition.unit).filter(|unit| !["1", "count"].contains(unit));
-        let axis = unit.map_or_else(|| name.to_owned(), |unit| format!("{name} ({unit})"));
-        page.push_str(&boxes::svg(table, name, &order, &axis));
-        page.push_str(&markdown::html(tables));
-    }
+    let parts = text.split("\n## ").skip(1).map(|part| part.split_once('\n').unwrap_or((part, "")));
     let absent: BTreeSet<&str> = absent.iter().map(String::as_str).filter(|key| filter(key)).collect();
-    for key in absent {
-        writeln!(page, "<p>{}: no trial has a value that may be shown.</p>", escape(key)).ok();
-    }
-    page.push_str("</section>\n");
+    let body = html! {
+        @for (name, tables) in parts.filter(|(name, _)| filter(name)) {
+            @let about = definition(name);
+            h3 { (name) }
+            @if let Some(definition) = about {
+                p.note { (definition.words) " (" (if definition.unit == "1" { "a ratio" } else { definition.unit }) ")" }
+            }
+            @let unit = about.map(|definition| definition.unit).filter(|unit| !["1", "count"].contains(unit));
+            @let axis = unit.map_or_else(|| name.to_owned(), |unit| format!("{name} ({unit})"));
+            (boxes::svg(table, name, &order, &axis))
+            (markdown::markup(tables))
+        }
+        @for key in absent { p { (key) ": no trial has a value that may be shown." } }
+    };
+    section(title, &body)
 }
 
-fn methods(measures: Option<&Analysed>, scores: Option<&Analysed>) -> String {
-    let mut rows = vec![[TRIALS, "every trial that counts, with all measures"]];
+fn methods(measures: Option<&Analysed>, scores: Option<&Analysed>) -> Markup {
+    let mut rows = vec![vec![TRIALS, "every trial that counts, with all measures"]];
     if measures.is_some() {
-        rows.push(["trials-analysis.R", "repeats the tests in R: Rscript trials-analysis.R trials.csv"]);
-        rows.push(["trials-analysis.csv, .json, .md", "the comparisons of this page"]);
+        rows.push(vec!["trials-analysis.R", "repeats the tests in R: Rscript trials-analysis.R trials.csv"]);
+        rows.push(vec!["trials-analysis.csv, .json, .md", "the comparisons of this page"]);
     }
-    rows.push([QUESTIONNAIRES, "the scores of the questionnaires after each condition"]);
+    rows.push(vec![QUESTIONNAIRES, "the scores of the questionnaires after each condition"]);
     if scores.is_some() {
-        rows.push(["questionnaires-analysis.R, .csv, .json, .md", "the same for them"]);
+        rows.push(vec!["questionnaires-analysis.R, .csv, .json, .md", "the same for them"]);
     }
-    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect()).collect();
-    format!(
-        "<section>\n<h2>How it was computed</h2>\n<p>As <code>nima study trials</code> does it: several trials of a participant under a \
-         condition count as their mean, the mixed model takes each trial. p (Holm) is corrected for the pairs of one measure, not for \
-         several measures: the primary measure decides. A box goes from the first to the third quartile of the participants' means, with \
-         the median; the lines reach the farthest value within 1.5 of its height; every participant is a point.</p>\n{}</section>\n",
-        table(&["file", "holds"], &rows)
-    )
+    let body = html! {
+        p {
+            "As " code { "nima study trials" } " does it: several trials of a participant under a condition count as their mean, the mixed \
+             model takes each trial. p (Holm) is corrected for the pairs of one measure, not for several measures: the primary measure \
+             decides. A box goes from the first to the third quartile of the participants' means, with the median; the lines reach the \
+             farthest value within 1.5 of its height; every participant is a point."
+        }
+        (table(&["file", "holds"], &rows))
+    };
+    section("How it was computed", &body)
 }

@@ -1,17 +1,16 @@
 //! The participants in the report: progress, exclusions, remarks, learning.
 
-use std::fmt::Write as _;
-
+use maud::{Markup, PreEscaped, html};
 use nima_charts::{Axis, Chart, Series, Style, svg};
 use nima_score::{LearningCurve, Shape, Standing};
 use nima_user_study::{Answers, Exclusion, Learning, Study, Table};
 
-use crate::report::html::{digits, escape, table};
+use crate::report::html::{digits, section, table, table_or};
 
 /// Maximum number of participants whose times are drawn: more lines would be indistinguishable.
 const DRAWN: usize = 7;
 
-pub(super) fn participants(study: &Study) -> String {
+pub(super) fn participants(study: &Study) -> Markup {
     let plan = study.plan();
     let state = study.state();
     let row = |participant: &nima_user_study::Participant| {
@@ -27,38 +26,36 @@ pub(super) fn participants(study: &Study) -> String {
             count(&|one| one.trials.iter().filter(|made| made.measures.is_none()).count()),
             count(&|one| one.interruptions as usize),
             count(&|one| one.breaks_s.len()),
-            escape(&next),
+            next,
         ]
     };
     let rows: Vec<Vec<String>> = plan.participants.iter().map(row).collect();
     let heads = ["participant", "order", "practice", "trials", "without result", "interruptions", "breaks", "next"];
-    format!("<section>\n<h2>Participants</h2>\n{}</section>\n", table(&heads, &rows))
+    section("Participants", &table(&heads, &rows))
 }
 
 /// Exclusions from the analysis, with reasons.
-pub(super) fn left_out(trials: &Table) -> String {
+pub(super) fn left_out(trials: &Table) -> Markup {
     let excluded = trials.excluded.iter().map(|Exclusion { participant, trial, why }| {
         let what = trial.map_or_else(|| "everything".to_owned(), |trial| format!("trial {trial}"));
-        vec![participant.clone(), what, escape(why)]
+        vec![participant.clone(), what, why.clone()]
     });
     let missing = trials.missing.iter().map(|(participant, trial)| {
         vec![participant.clone(), format!("trial {trial}"), "interrupted: no result".to_owned()]
     });
     let rows: Vec<Vec<String>> = excluded.chain(missing).collect();
-    let body =
-        if rows.is_empty() { "<p>Nothing.</p>\n".to_owned() } else { table(&["participant", "what", "why"], &rows) };
-    format!("<section>\n<h2>Excluded from the analysis</h2>\n{body}</section>\n")
+    section("Excluded from the analysis", &table_or(&["participant", "what", "why"], &rows, "Nothing."))
 }
 
 /// Scores at the end, free texts, and notes of the experimenters.
-pub(super) fn remarks(study: &Study) -> String {
+pub(super) fn remarks(study: &Study) -> Markup {
     let mut scores = Vec::new();
     let mut rows = Vec::new();
     for (name, progress) in study.state().participants() {
         for (after, answers, _) in &progress.answers {
             let about = after.map_or_else(|| "at the end".to_owned(), |label| format!("after {label}"));
             if let Answers::FreeText(text) = answers {
-                rows.push(vec![name.to_owned(), about, escape(text)]);
+                rows.push(vec![name.to_owned(), about, text.clone()]);
             } else if after.is_none() {
                 let of = |(score, value): (&str, f64)| vec![name.to_owned(), score.to_owned(), digits(value)];
                 scores.extend(answers.scores().into_iter().map(of));
@@ -66,35 +63,21 @@ pub(super) fn remarks(study: &Study) -> String {
         }
     }
     let notes = study.state().notes.iter().map(|(at, about, text)| {
-        vec![about.clone().unwrap_or_else(|| "-".to_owned()), format!("note of {}", escape(at)), escape(text)]
+        vec![about.clone().unwrap_or_else(|| "-".to_owned()), format!("note of {at}"), text.clone()]
     });
     rows.extend(notes);
-    let mut text = String::new();
-    if !scores.is_empty() {
-        write!(
-            text,
-            "<section>\n<h2>Scores at the end</h2>\n{}</section>\n",
-            table(&["participant", "score", "value"], &scores)
-        )
-        .ok();
+    html! {
+        @if !scores.is_empty() { (section("Scores at the end", &table(&["participant", "score", "value"], &scores))) }
+        @if !rows.is_empty() { (section("Remarks and notes", &table(&["participant", "when", "text"], &rows))) }
     }
-    if !rows.is_empty() {
-        write!(
-            text,
-            "<section>\n<h2>Remarks and notes</h2>\n{}</section>\n",
-            table(&["participant", "when", "text"], &rows)
-        )
-        .ok();
-    }
-    text
 }
 
 /// Proficiency and learning curves.
-pub(super) fn learning(study: &Study) -> String {
+pub(super) fn learning(study: &Study) -> Markup {
     let all = study.learning();
     // A task without an end, such as touching for a given time, has no completion times.
     if all.iter().all(|of| of.practice == 0 && of.times_s.iter().all(Option::is_none)) {
-        return String::new();
+        return html! {};
     }
     let row = |of: &Learning| {
         let standing = of.standing.map_or_else(|| "-".to_owned(), standing_in_words);
@@ -105,10 +88,11 @@ pub(super) fn learning(study: &Study) -> String {
     };
     let rows: Vec<Vec<String>> = all.iter().map(row).collect();
     let heads = ["participant", "practice", "criterion", "first time (s)", "last time (s)", "curve"];
-    let mut text = format!("<section>\n<h2>Learning</h2>\n{}", table(&heads, &rows));
-    text.push_str(&times(&all));
-    text.push_str("</section>\n");
-    text
+    let body = html! {
+        (table(&heads, &rows))
+        (times(&all))
+    };
+    section("Learning", &body)
 }
 
 fn standing_in_words(standing: Standing) -> String {
@@ -135,11 +119,11 @@ fn curve_in_words(curve: &LearningCurve) -> String {
 }
 
 /// Completion times over the trials, of the first participants.
-fn times(all: &[Learning]) -> String {
+fn times(all: &[Learning]) -> Markup {
     let known = |of: &&Learning| of.times_s.iter().flatten().count() > 1;
     let drawn: Vec<&Learning> = all.iter().filter(known).take(DRAWN).collect();
     if drawn.is_empty() {
-        return String::new();
+        return html! {};
     }
     let points = |of: &Learning| {
         let numbered = of.times_s.iter().zip(1_u32..);
@@ -157,5 +141,5 @@ fn times(all: &[Learning]) -> String {
         y: Axis::around("completion time (s)", values(1), false),
         series: series.clone(),
     };
-    svg(&[chart])
+    PreEscaped(svg(&[chart]))
 }

@@ -2,12 +2,25 @@
 //!
 //! One chain for a force in space, one for a torque, one for a gripper: the same gates, of as many axes as are asked for.
 
+mod age;
+mod ceiling;
+mod dead_band;
+mod energy;
+mod gain;
+mod slew;
+mod validity;
+
 use nalgebra::SVector;
 
-use super::{
-    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Governor, Reading,
-    Reason, Slew, admitted,
-};
+pub use age::Age;
+pub use ceiling::Ceiling;
+pub use dead_band::DeadBand;
+pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MOST_J};
+pub use gain::Gain;
+pub use slew::Slew;
+pub use validity::{PLAUSIBLE_N, admitted};
+
+use super::{ChainSettings, EnergyMode, Gate, GateCounts, GateReport, Governor, Reading, Reason};
 use crate::limits::DEAD_BAND_M_S;
 
 /// One force asking to reach the hand. [`Request::default`] is one that is not permitted.

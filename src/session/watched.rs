@@ -14,8 +14,8 @@ use crate::{
     objects::{Jaws, Mark, Objects, Standing, WireLoop},
 };
 
-/// Version of the bundles; another one is refused.
-const VERSION: u8 = 4;
+/// Version of the bundles, whose values are coded as those of a journal are; another one is refused.
+const VERSION: u8 = crate::journal::VERSION as u8;
 /// Time between two ticks of a bundle, s: what a trace on a screen can show.
 const STEP_S: f64 = 0.005;
 /// Most moments of a bundle, and most events of a moment.

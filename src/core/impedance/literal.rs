@@ -1,11 +1,10 @@
 //! The paper to the letter: `M = F X^T (X X^T)^-1` per axis and degree, and the degree with the least error in the window.
 
 use super::{
-    MAX_DEGREE,
+    LiteralModel, MAX_DEGREE,
     factor::column_start,
     features::{MOTION_COLUMNS, Scales},
     gram::{GRAM_ROW, Gram},
-    messages::LiteralModel,
     recipe::Recipe,
 };
 use crate::signal::{LANES, Lanes};

@@ -3,15 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE, Mode, SLOTS,
-    anchored::within,
-    baselines::BaselineModel,
-    features::{Features, MOTION_COLUMNS},
-    matched::{MatchedModel, Slip},
-    regressors::{Stance, motion_changes},
+    MAX_DEGREE, Mode, Models, SLOTS,
+    features::{Features, MOTION_COLUMNS, Scales},
+    regressors::Stance,
     settings::ModeSet,
 };
-use crate::signal::{LANES, Lanes};
+use crate::signal::{LANES, Lanes, Motion};
 
 /// One tick at the follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,98 +21,24 @@ pub struct Sample {
     pub force_n: Vector3<f64>,
 }
 
-/// Parameters of the paper's model `f = M X`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LiteralModel {
-    /// Degree `N`; 0: none could be solved.
-    pub degree: u8,
-    /// Constant force (N); zero unless the recipe has one.
-    pub constant_n: Lanes,
-    /// `M`: the first `3 N` are in use, N per SI unit of the feature.
-    pub coefficients: [Lanes; MOTION_COLUMNS],
-}
-
-impl LiteralModel {
-    /// No model.
-    pub const NONE: Self = Self { degree: 0, constant_n: Lanes::ZERO, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
-
-    /// `M X` (N), `X` in SI units as the recipe reads it.
-    #[inline]
-    pub(super) fn product(&self, x: &Features) -> Lanes {
-        let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
-        terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
-    }
-
-    /// The same; `None` without a model or where the product is not finite.
-    pub(super) fn force(&self, x: &Features) -> Option<Lanes> {
-        let force = self.product(x);
-        (self.degree > 0 && force.is_finite()).then_some(force)
-    }
-}
-
-/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnchoredModel {
-    /// N per change of position (m), of its differences from four low-passes (m), of friction
-    /// (1), of square, cube and product of the position about the centre (m², m³, m²).
-    pub motion: [Lanes; 9],
-    /// What the follower alone knows: the change expected without any motion (N).
-    pub constant_n: Lanes,
-    /// Slow mean of the follower's position (m).
-    pub centre_m: Lanes,
-    /// Where friction saturates (m).
-    pub knee: Lanes,
-    /// Least force rendered (N): forces beyond those seen are not invented.
-    pub low_n: Lanes,
-    /// Greatest force rendered (N).
-    pub high_n: Lanes,
-    /// Largest correction (N, norm over the axes).
-    pub bound_n: f64,
-    /// Highest power of the position in the model that most of the weight is on, 1 or 3; 0 without a correction.
-    pub degree: u8,
-    /// How much of a full correction this is, 0 (plain reflection) to 1, on the axis that is corrected most.
-    pub gain: f64,
-}
-
-impl AnchoredModel {
-    /// No correction.
-    pub const NONE: Self = Self {
-        motion: [Lanes::ZERO; 9],
-        constant_n: Lanes::ZERO,
-        centre_m: Lanes::ZERO,
-        knee: Lanes::ZERO,
-        low_n: Lanes::ZERO,
-        high_n: Lanes::ZERO,
-        bound_n: 0.0,
-        degree: 0,
-        gain: 0.0,
-    };
-
-    /// The force (N) for the motion now, from the force and the motion at the anchor. The force as it came where nothing is
-    /// corrected or the correction is not finite.
-    pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
-        if self.gain <= 0.0 {
-            return measured;
-        }
-        let changes = motion_changes(&now.stance, &then.stance, self.centre_m, self.knee);
-        let correction = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
-        if correction.is_finite() {
-            within(measured + clip(correction, self.bound_n), self.low_n, self.high_n)
-        } else {
-            measured
-        }
-    }
-}
-
 /// One end's motion at one tick, as the models see it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Posture {
+pub struct Posture {
     pub(super) features: Features,
     pub(super) stance: Stance,
 }
 
 impl Posture {
     pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance::BLANK };
+
+    /// Position (m), velocity (m/s) and acceleration (m/s^2).
+    pub fn motion(&self, scales: &Scales) -> Motion {
+        Motion {
+            x: self.stance.x,
+            v: self.features[1] * scales.velocity_m_s,
+            a: self.features[2] * scales.acceleration_m_s2,
+        }
+    }
 }
 
 /// Shortens a force to `bound_n`; zero where it is not finite.
@@ -144,18 +67,8 @@ pub struct Parcel {
     pub resting: bool,
     /// The modes that were computed; nothing is rendered in the others.
     pub modes: ModeSet,
-    /// The paper's choice.
-    pub literal: LiteralModel,
-    /// The paper's linear model.
-    pub linear: LiteralModel,
-    /// Anchored rendering's choice.
-    pub anchored: AnchoredModel,
-    /// Matched rendering's parameters.
-    pub matched: MatchedModel,
-    /// The same in the paper's columns.
-    pub nima: MatchedModel,
-    /// What the baseline needs, where one is computed.
-    pub baseline: BaselineModel,
+    /// The parameters of each of them.
+    pub models: Models,
 }
 
 impl Parcel {
@@ -165,50 +78,9 @@ impl Parcel {
         force_n: Vector3::new(0.0, 0.0, 0.0),
         fresh: false,
         modes: ModeSet::only(Mode::Dfr),
-        literal: LiteralModel::NONE,
-        linear: LiteralModel::NONE,
-        anchored: AnchoredModel::NONE,
-        matched: MatchedModel::NONE,
-        nima: MatchedModel::NONE,
+        models: Models::NONE,
         resting: false,
-        baseline: BaselineModel::Nothing,
     };
-
-    /// The force of every mode for the motion now, by [`Mode::index`](super::Mode::index): `anchored` from the motion now and at
-    /// the time of the parcel, `literal` from `x`, the paper's `X` now, `matched` with this end's `slip`. `anchored_weight`: that of
-    /// anchored rendering in the best of both, 0 to 1. `baseline`: that mode's force, which has a state of its own
-    /// at the leader. Nothing is made of a force that is not finite: limits would turn it into one of their edges.
-    pub(super) fn render(
-        &self,
-        now: &Posture,
-        then: &Posture,
-        x: &Features,
-        slip: &mut Slip,
-        anchored_weight: Lanes,
-        baseline: impl FnOnce(&BaselineModel, Lanes) -> Option<Lanes>,
-    ) -> [Option<Lanes>; SLOTS] {
-        let measured = Lanes::from(self.force_n);
-        if !measured.is_finite() {
-            return [None; SLOTS];
-        }
-        let anchored = self.anchored.force(measured, now, then);
-        let matched = self.matched.force(now, slip);
-        let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * anchored_weight);
-        let mut forces = [
-            self.literal.force(x),
-            self.linear.force(x),
-            Some(measured),
-            Some(anchored),
-            matched,
-            self.nima.force(now, &mut Slip::default()),
-            Some(best),
-            self.modes.baseline().and_then(|_| baseline(&self.baseline, measured)),
-        ];
-        for mode in Mode::ALL.into_iter().filter(|mode| !self.modes.contains(*mode)) {
-            forces[mode.index()] = None;
-        }
-        forces
-    }
 }
 
 /// Forces rendered at the leader, unclamped (the gates of `safety` come after).
@@ -294,13 +166,18 @@ impl Report {
 
     /// The degree that `mode` uses; 0: none.
     pub fn degree_of(&self, mode: Mode) -> u8 {
-        match mode {
-            Mode::Literal => self.paper_degree,
-            Mode::Linear => u8::from(self.paper_degree > 0),
-            Mode::Dfr | Mode::Baseline(_) => 0,
-            Mode::Anchored => self.degree,
-            Mode::Matched | Mode::Best => self.matched_degree,
-            Mode::Nima => self.nima_degree,
+        mode.entry().map_or(0, |entry| (entry.degree)(self))
+    }
+
+    /// Takes over what a parcel tells of the identification, where the parcel is all that there is of it.
+    pub fn note(&mut self, parcel: &Parcel) {
+        self.t_s = parcel.t_s;
+        self.modes = parcel.modes;
+        self.resting = parcel.resting;
+        for mode in Mode::ALL {
+            if let Some(entry) = mode.entry() {
+                (entry.note)(&parcel.models, self);
+            }
         }
     }
 

@@ -1,6 +1,5 @@
 //! What the parameters do not explain and what stays: a slowly drifting offset, kept small.
 
-use super::super::anchored::within;
 use crate::signal::{DelayLine, Lanes};
 
 /// Memory of the learnt share, of the mean force and of the largest force (s).
@@ -49,7 +48,7 @@ impl Drift {
         self.products = (self.products * fade + weighted * then_n).settled();
         self.right = (self.right * fade + weighted * unexplained_n).settled();
         let share = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();
-        self.share = within(share, Lanes::ZERO, Lanes::splat(1.0));
+        self.share = share.within(Lanes::ZERO, Lanes::splat(1.0));
     }
 
     /// Takes this tick's residual and force (N); returns the offset to send (N).
@@ -61,7 +60,7 @@ impl Drift {
         self.mean_n = (self.mean_n + (size_n - self.mean_n) * self.seen.min(memory).recip()).settled();
         self.largest_n = (self.largest_n * (1.0 - memory.recip())).settled().zip(size_n, f64::max);
         let bound_n = self.largest_n * BOUND;
-        within(self.share * residual_n, -bound_n, bound_n)
+        (self.share * residual_n).within(-bound_n, bound_n)
     }
 
     /// Nothing was measured in this tick.

@@ -1,7 +1,7 @@
 //! Friction across a contact: how far the tip drags along what it touches, under a load that only the other axes feel.
 
 use super::{
-    super::{anchored::within, messages::Posture, pace::share},
+    super::{messages::Posture, pace::share},
     form::{Row, product},
     model::MatchedModel,
 };
@@ -33,7 +33,7 @@ impl Stretch {
         let load_n = load(force_n);
         for (held, give) in self.held.iter_mut().zip(gives) {
             let limit = load_n * *give;
-            *held = within(*held + way, -limit, limit);
+            *held = (*held + way).within(-limit, limit);
         }
         &self.held
     }
@@ -41,7 +41,7 @@ impl Stretch {
 
 /// The springs at the leader, and at the follower's copy of it: the load is the force that the parameters make.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct Slip {
+pub(super) struct Slip {
     stretch: Stretch,
     /// The force of the tick before (N): the newest one needs the springs first.
     said_n: Lanes,

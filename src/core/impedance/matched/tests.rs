@@ -12,7 +12,7 @@ const MATCHED: [Form; 3] = [Form::Tissue, Form::Sliding, Form::Coupled];
 /// Both ends, and a link of `delay` ticks between them; the leader's own motion is handed in.
 struct Pair {
     follower_track: Track,
-    follower: Matched,
+    follower: Learner,
     leader_track: Track,
     leader_slip: Slip,
     link: Vec<MatchedModel>,
@@ -24,7 +24,7 @@ impl Pair {
         let delay = settings.delay_ticks(settings.delay_s);
         Self {
             follower_track: Track::new(settings),
-            follower: Matched::new(form, settings, delay),
+            follower: Learner::new(form, settings, delay),
             leader_track: Track::new(settings),
             leader_slip: Slip::default(),
             link: Vec::new(),

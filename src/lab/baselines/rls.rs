@@ -1,8 +1,8 @@
 //! Recursive least squares with exponential forgetting, in information form, for three axes at once.
 
-use crate::signal::{Lanes, NOTHING};
+use nima_core::signal::{Lanes, NOTHING};
 
-use super::kept;
+use crate::kept;
 
 /// Memory of the columns' mean squares, by which the ridge is made free of units (s).
 const SQUARES_S: f64 = 20.0;
@@ -12,7 +12,7 @@ const SQUARES_S: f64 = 20.0;
 /// proportion to each column's own mean square, towards the parameters known before, stands for the inverse of the first
 /// covariance and is not forgotten: without motion the covariance of the usual recursion grows beyond all bounds.
 #[derive(Clone, Debug)]
-pub(super) struct Rls<const N: usize> {
+pub(crate) struct Rls<const N: usize> {
     kept: f64,
     ridge: f64,
     squares_ticks: f64,
@@ -25,7 +25,7 @@ pub(super) struct Rls<const N: usize> {
 
 impl<const N: usize> Rls<N> {
     /// A memory (s), and a ridge in seconds of typical columns that say "as before".
-    pub(super) fn new(memory_s: f64, ridge_s: f64, rate_hz: f64) -> Self {
+    pub(crate) fn new(memory_s: f64, ridge_s: f64, rate_hz: f64) -> Self {
         Self {
             kept: kept(memory_s, rate_hz),
             ridge: ridge_s * rate_hz,
@@ -38,7 +38,7 @@ impl<const N: usize> Rls<N> {
     }
 
     /// Takes in the columns `q` of one sample and its target.
-    pub(super) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
+    pub(crate) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
         self.seen = (self.seen + 1.0).min(self.squares_ticks);
         let share = 1.0 / self.seen;
         for (j, row) in self.gram.iter_mut().enumerate() {
@@ -51,7 +51,7 @@ impl<const N: usize> Rls<N> {
     }
 
     /// The same samples in other units: column `j` becomes `factors[j]` times what it was.
-    pub(super) fn rescale(&mut self, factors: &[Lanes; N]) {
+    pub(crate) fn rescale(&mut self, factors: &[Lanes; N]) {
         for (j, factor) in factors.iter().enumerate() {
             for (sum, other) in self.gram[j].iter_mut().zip(factors).take(j + 1) {
                 *sum = *sum * *factor * *other;
@@ -62,7 +62,7 @@ impl<const N: usize> Rls<N> {
     }
 
     /// The parameters, shrunk towards `prior`; that itself where nothing is known.
-    pub(super) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
+    pub(crate) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
         let mut factor = [[Lanes::ZERO; N]; N];
         let mut inverse = [Lanes::ZERO; N];
         let mut z = [Lanes::ZERO; N];
@@ -91,7 +91,7 @@ impl<const N: usize> Rls<N> {
         parameters
     }
 
-    pub(super) fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.seen = 0.0;
         self.gram = [[Lanes::ZERO; N]; N];
         self.right = [Lanes::ZERO; N];
@@ -100,7 +100,7 @@ impl<const N: usize> Rls<N> {
 }
 
 /// Sum of the products of the entries.
-pub(super) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
+pub(crate) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
     a.iter().zip(b).fold(Lanes::ZERO, |sum, (a, b)| sum + *a * *b)
 }
 

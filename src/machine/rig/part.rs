@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{SensorSettings, Settings, Side};
+use super::{FollowerSettings, LeaderSettings, SensorSettings, Settings, Side};
 
 /// What a device is used for in a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -141,9 +141,9 @@ impl Part {
     /// Makes of it that the program knows.
     pub const fn makes(self) -> &'static [&'static str] {
         match self.kind() {
-            PartKind::Handle => &["Force Dimension", "Haply", "external"],
-            PartKind::Arm => &["Kinova", "simulated", "external"],
-            PartKind::Sensor => &["Bota", "external"],
+            PartKind::Handle => LeaderSettings::MAKERS,
+            PartKind::Arm => FollowerSettings::MAKERS,
+            PartKind::Sensor => SensorSettings::MAKERS,
             PartKind::Servos => &["DYNAMIXEL"],
             PartKind::Tracker => &["NDI"],
             PartKind::Pedal => &[],

@@ -38,6 +38,8 @@ impl Serialize for FollowerSettings {
 impl FollowerSettings {
     /// Its makes as a rig file names them, the usual one first.
     pub(super) const MAKES: &[&str] = &["kinova", "simulated", "external"];
+    /// The same on the screen.
+    pub(crate) const MAKERS: &[&str] = &["Kinova", "simulated", "external"];
 
     /// Of an arm by Kinova.
     pub const fn kinova(&self) -> Option<&kinova::Settings> {

@@ -38,6 +38,8 @@ impl Serialize for LeaderSettings {
 impl LeaderSettings {
     /// Its makes as a rig file names them, the usual one first.
     pub(super) const MAKES: &[&str] = &["force_dimension", "haply", "external"];
+    /// The same on the screen.
+    pub(crate) const MAKERS: &[&str] = &["Force Dimension", "Haply", "external"];
 
     /// The settings, if it is a handle by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {

@@ -34,6 +34,8 @@ impl Serialize for SensorSettings {
 impl SensorSettings {
     /// Its makes as a rig file names them, the usual one first.
     pub(super) const MAKES: &[&str] = &["bota", "external"];
+    /// The same on the screen.
+    pub(crate) const MAKERS: &[&str] = &["Bota", "external"];
 
     /// Of a sensor by Bota.
     pub const fn bota(&self) -> Option<&bota::Settings> {

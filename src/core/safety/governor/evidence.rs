@@ -6,7 +6,10 @@
 
 use nalgebra::SVector;
 
-use super::observer::{Past, Range};
+use super::{
+    fit::Parabola,
+    observer::{Past, Range},
+};
 
 /// Largest acceleration of a hand, m/s^2: a minimum-jerk motion of 35 mm in 0.2 s has 5.05 (5.77 d / T^2, Flash and Hogan 1985),
 /// and a soft grip overshoots by a fifth.
@@ -33,9 +36,14 @@ const LOST: f64 = 0.4;
 /// Fraction of the force that a hand carried before a step counts as one.
 const CARRIED: f64 = 0.5;
 /// Windows of the parabola, s, and of the two halves of the kink, s: short ones for strong forces, long ones for weak ones.
-const PUSHES_S: [f64; 4] = [0.004, 0.006, 0.009, LONG_S];
+const PUSHES_S: [f64; 5] = [0.004, 0.006, 0.009, LONG_S, 2.0 * LONG_S];
 const STEPS_S: [[f64; 2]; 4] = [[0.008, 0.005], [0.008, 0.008], [0.010, 0.011], [0.016, 0.014]];
 const LONG_S: f64 = 0.014;
+/// Windows in which the travel is judged, s: the shortest that knows the force.
+const TRAVELS_S: [f64; 3] = [LONG_S, 2.0 * LONG_S, 4.0 * LONG_S];
+/// A fit whose readings scatter by more than this fraction of the applied force knows nothing: beyond it, hands whose device reads on a
+/// clock of its own (`nima study hands`) are taken for none.
+const SCATTER: f64 = 0.3;
 /// Travel under the force alone that is suspicious above the rare acceleration, and that is certain at any, m. No motion of the study
 /// goes more than 13 mm so.
 const PUSHED_M: f64 = 1e-3;
@@ -94,6 +102,11 @@ impl Parts {
         Self { size_n, carried_n, aside_n: (hand_n + along * carried_n).norm() }
     }
 
+    /// Mass times acceleration along the force, at least, N.
+    fn pushed_n(&self, error_n: f64) -> f64 {
+        self.size_n - self.carried_n - error_n
+    }
+
     /// A lone handle shows this hand force: an error of its mass, friction, and the error of the fit.
     fn is_free(&self, error_n: f64) -> bool {
         let mass_n = MASS_OFF * self.size_n + error_n;
@@ -108,35 +121,37 @@ impl<const D: usize> Evidence<D> {
     }
 
     fn pushes(&mut self, past: &Past<D>) -> Alone {
-        let mut alone = Alone::No;
-        let mut travels = false;
-        for span_s in PUSHES_S {
-            let Some(now) = past.parabola(span_s) else { break };
+        for now in PUSHES_S.iter().map_while(|span_s| past.parabola(*span_s)) {
             let size_n = now.applied_n.norm();
-            if size_n < WEAK_N || now.velocity_m_s.dot(&now.applied_n) < OUT_M_S * size_n {
+            if !moves_along(&now) || now.scatter_n > SCATTER * size_n {
                 continue;
             }
             let range = past.range(now.span_s + ANSWER_S, &(now.applied_n / size_n));
             let parts = Parts::of(&now.hand_n, &now.applied_n);
-            // Mass times acceleration along the force, at least.
-            let pushed_n = size_n - parts.carried_n - now.error_n;
-            let kg = past.handle.mass_kg;
             let lost = parts.carried_n < LOST * size_n + now.error_n
                 && parts.aside_n < MASS_OFF * size_n + COULOMB_N + now.error_n;
-            if lost && range.min_along_n > 0.0 && pushed_n - range.change_n() > kg * HAND_M_S2 {
+            let pushed_n = parts.pushed_n(now.error_n) - range.change_n();
+            if lost && range.min_along_n > 0.0 && pushed_n > past.handle.mass_kg * HAND_M_S2 {
                 return Alone::Certain;
             }
+        }
+        self.travels(past)
+    }
+
+    fn travels(&mut self, past: &Past<D>) -> Alone {
+        let known = |now: &Parabola<D>| now.scatter_n <= SCATTER * now.applied_n.norm();
+        let fit = TRAVELS_S.iter().map_while(|span_s| past.parabola(*span_s)).find(known);
+        if let Some(now) = fit.filter(moves_along) {
+            let size_n = now.applied_n.norm();
+            let parts = Parts::of(&now.hand_n, &now.applied_n);
             let steady_n = past.range(now.span_s, &(now.applied_n / size_n)).min_along_n;
-            if span_s >= LONG_S && parts.is_free(now.error_n) && steady_n > 0.5 * size_n {
-                travels = true;
-                let speed_m_s = now.velocity_m_s.norm();
-                alone = alone.max(self.travel(past, size_n, speed_m_s, pushed_n > kg * RARE_M_S2));
+            if parts.is_free(now.error_n) && steady_n > 0.5 * size_n {
+                let rare = parts.pushed_n(now.error_n) > past.handle.mass_kg * RARE_M_S2;
+                return self.travel(past, size_n, now.velocity_m_s.norm(), rare);
             }
         }
-        if !travels {
-            self.run = None;
-        }
-        alone
+        self.run = None;
+        Alone::No
     }
 
     fn travel(&mut self, past: &Past<D>, size_n: f64, speed_m_s: f64, rare: bool) -> Alone {
@@ -155,6 +170,12 @@ impl<const D: usize> Evidence<D> {
     }
 }
 
+/// The handle moves along a force that is strong enough to be judged.
+fn moves_along<const D: usize>(now: &Parabola<D>) -> bool {
+    let size_n = now.applied_n.norm();
+    size_n >= WEAK_N && now.velocity_m_s.dot(&now.applied_n) >= OUT_M_S * size_n
+}
+
 /// Whether the hand's force has vanished in a step.
 fn steps<const D: usize>(past: &Past<D>) -> Alone {
     let mut alone = Alone::No;
@@ -170,7 +191,8 @@ fn steps<const D: usize>(past: &Past<D>) -> Alone {
         let range: Range = past.range(kink.span_s, &along);
         let parts = Parts::of(&kink.after_n, &kink.applied_after_n);
         let was_carried = -kink.before_n.dot(&along) > CARRIED * kink.applied_before_n.dot(&along);
-        if range.min_along_n < 0.5 * size_n || !parts.is_free(kink.after_error_n) || !was_carried {
+        let known = kink.scatter_n <= SCATTER * size_n;
+        if !known || range.min_along_n < 0.5 * size_n || !parts.is_free(kink.after_error_n) || !was_carried {
             continue;
         }
         // A wrong mass makes a step of the applied force look like one of the hand's.

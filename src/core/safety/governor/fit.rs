@@ -1,8 +1,9 @@
 //! The hand's force as the second derivative of [`Past::y`]: one parabola, or a parabola whose curvature steps once.
 //!
 //! Each force comes with a bound on its error: the largest that readings in steps can cause (half a step each, all of the worst
-//! sign), or three deviations of what the fit leaves over, whichever is larger. So friction that sticks and slips, vibration and
-//! inexact times widen the bound instead of looking like a hand.
+//! sign), three deviations of the residuals, or what the inexact times of the readings cause at the present speed, whichever is
+//! largest. So friction that sticks and slips, vibration and inexact times widen the bound instead of looking like a hand. *Scatter* is
+//! the part of the bound that the steps do not explain.
 
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
@@ -22,6 +23,8 @@ pub(super) struct Parabola<const D: usize> {
     pub(super) hand_n: SVector<f64, D>,
     /// Bound on its error, N.
     pub(super) error_n: f64,
+    /// Part of it that steps of the reading do not explain, N.
+    pub(super) scatter_n: f64,
     /// Velocity at the newest sample, m/s.
     pub(super) velocity_m_s: SVector<f64, D>,
     /// Mean applied force, N.
@@ -39,6 +42,8 @@ pub(super) struct Kink<const D: usize> {
     /// Bounds on the errors of the force after the step, and of the step, N.
     pub(super) after_error_n: f64,
     pub(super) step_error_n: f64,
+    /// Part of the error of the step that steps of the reading do not explain, N.
+    pub(super) scatter_n: f64,
     /// Mean applied force before and after the step, N.
     pub(super) applied_before_n: SVector<f64, D>,
     pub(super) applied_after_n: SVector<f64, D>,
@@ -47,6 +52,23 @@ pub(super) struct Kink<const D: usize> {
     /// Time since the step, and length of both windows together, s.
     pub(super) after_s: f64,
     pub(super) span_s: f64,
+}
+
+/// Bounds on the error of a parameter.
+struct Error {
+    all: f64,
+    /// Part that steps of the reading do not explain.
+    scatter: f64,
+}
+
+impl Error {
+    /// From the bound by steps, the residuals' deviation, the error of each sample by inexact times, and the parameter's deviation for
+    /// samples of deviation 1.
+    fn of(steps: f64, residual: f64, off: f64, deviation: f64) -> Self {
+        let left = DEVIATIONS * residual * deviation;
+        let scatter = (off * deviation).max(if left > steps { left } else { 0.0 });
+        Self { all: steps.max(scatter), scatter }
+    }
 }
 
 impl<const D: usize> Past<D> {
@@ -60,6 +82,14 @@ impl<const D: usize> Past<D> {
     /// Mean force applied between two samples, N.
     fn mean_n(&self, old: usize, new: usize) -> SVector<f64, D> {
         (self.impulse_n_s[old] - self.impulse_n_s[new]) / (self.t_s[new] - self.t_s[old])
+    }
+
+    /// Error of each `y` by inexact times, at the root mean square of the speed from this sample on, kg m.
+    fn off_kg_m(&self, old: usize) -> f64 {
+        let between =
+            |k: usize| (self.from_now_m[k] - self.from_now_m[k + 1]).norm_squared() / (self.t_s[k] - self.t_s[k + 1]);
+        let speed_m_s = ((0..old).map(between).sum::<f64>() / -self.t_s[old]).sqrt();
+        self.handle.mass_kg * speed_m_s * self.inexact_s
     }
 
     /// Fits one parabola to the last `span_s` (s).
@@ -82,9 +112,11 @@ impl<const D: usize> Past<D> {
         let worst = 0.5 * self.handle.mass_kg * self.handle.step_m * weights;
         // y' = m v + c (x - x_now) + the impulse until now; the last two are none at the newest sample.
         let velocity_m_s = (slope + bend * (2.0 * centred(0) - cubes / squares)) / self.handle.mass_kg;
+        let error = Error::of(worst, residual, self.off_kg_m(end), 1.0 / norm.sqrt());
         let fit = Parabola {
             hand_n: bend * 2.0,
-            error_n: 2.0 * worst.max(DEVIATIONS * residual / norm.sqrt()),
+            error_n: 2.0 * error.all,
+            scatter_n: 2.0 * error.scatter,
             velocity_m_s,
             applied_n: self.mean_n(end, 0),
             span_s: -self.t_s[end],
@@ -110,20 +142,23 @@ impl<const D: usize> Past<D> {
         let left = |k: usize| (self.y[k] - solved.transpose() * row(k)).norm_squared();
         let residual = ((0..=end).map(left).sum::<f64>() / (end as f64 - 3.0)).sqrt();
         let half_step = 0.5 * self.handle.mass_kg * self.handle.step_m;
-        // Bound on the error of a sum of the four parameters.
-        let bound = |sum: Vector4<f64>| {
+        let off = self.off_kg_m(end);
+        // Error of a sum of the four parameters.
+        let error = |sum: Vector4<f64>| {
             let weights = (0..=end).map(|k| (inverse * row(k)).dot(&sum).abs()).sum::<f64>();
             let deviation = sum.dot(&(inverse * sum)).max(0.0).sqrt();
-            (half_step * weights).max(DEVIATIONS * residual * deviation) / (span_s * span_s)
+            Error::of(half_step * weights, residual, off, deviation)
         };
+        let [after, step] = [Vector4::new(0.0, 0.0, 1.0, 1.0), Vector4::w()].map(error);
         let before_n: SVector<f64, D> = solved.row(2).transpose() / (span_s * span_s);
         let step_n: SVector<f64, D> = solved.row(3).transpose() / (span_s * span_s);
         let slope: SVector<f64, D> = (solved.row(1) - solved.row(3) * (self.t_s[at] / span_s)).transpose() / span_s;
         let fit = Kink {
             before_n,
             after_n: before_n + step_n,
-            after_error_n: bound(Vector4::new(0.0, 0.0, 1.0, 1.0)),
-            step_error_n: bound(Vector4::w()),
+            after_error_n: after.all / (span_s * span_s),
+            step_error_n: step.all / (span_s * span_s),
+            scatter_n: step.scatter / (span_s * span_s),
             applied_before_n: self.mean_n(end, at),
             applied_after_n: self.mean_n(at, 0),
             velocity_m_s: slope / self.handle.mass_kg,

@@ -16,8 +16,8 @@
 //! and changes no faster than the slew limit; once let go, `F . v <= 0` with the estimated `v`. The energy gate before this one
 //! observes the applied force, so its bound holds too.
 //!
-//! A handle whose readings repeat themselves while it moves is not judged, and the whole force passes: its readings are up to a millisecond
-//! older than their times, and a hand that is there would look like none.
+//! A device that reads on a clock of its own gives readings that are up to a period older than their times. How much is measured while the
+//! handle moves, and widens the error of the hand's force; where that says nothing any more, a longer window is asked.
 //!
 //! Measured, not certain: how far a released handle travels, and how rarely a hand looks like none (`docs/release.md`,
 //! `docs/hands.md`). Below about 1.5 N a slowly opening hand and a fast voluntary motion look the same; there the handle travels
@@ -42,8 +42,9 @@ use super::{PLAUSIBLE_N, Reason};
 const BRAKE_OF_MASS: f64 = 0.15;
 /// Below this speed nothing is braked, m/s.
 const STILL_M_S: f64 = 2e-3;
-/// Window in which the hand's force is judged while the force is withheld, s.
+/// Windows in which the hand's force is judged while the force is withheld, s: the long one once it fits in, for readings that scatter.
 const JUDGED_S: f64 = 0.009;
+const JUDGED_LONG_S: f64 = 0.028;
 /// A soft grip (400 N/m, 8 N s/m) pulls a handle whose force has vanished by more than friction after this time, s.
 const ANSWER_S: f64 = 0.020;
 /// A finding that lasts so long is no error of one reading, s.
@@ -226,13 +227,7 @@ impl<const D: usize> Governor<D> {
         self.observer.held(&self.applied_n, dt_s);
         let Some(reading) = reading else { return SVector::zeros() };
         self.observer.read(reading.t_s, reading.at_m);
-        if self.observer.times_are_unknown() && self.grip != Grip::Gone {
-            self.grip = Grip::Held;
-        }
-        if self.grip == Grip::Gone
-            || self.observer.times_are_unknown()
-            || (self.grip == Grip::Held && self.applied_n.norm() < COULOMB_N)
-        {
+        if self.grip == Grip::Gone || (self.grip == Grip::Held && self.applied_n.norm() < COULOMB_N) {
             self.evidence = Evidence::default();
             return SVector::zeros();
         }
@@ -273,9 +268,13 @@ impl<const D: usize> Governor<D> {
         // A long tick is one look, not many.
         let looked_s = dt_s.min(self.period_s);
         let speed_m_s = now.velocity_m_s.norm();
-        let applied_n = past.range(now.span_s, &SVector::zeros()).max_n;
         let friction_n = COULOMB_N + self.handle.damping_n_s_m * speed_m_s;
-        let pulls = now.hand_n.norm() > friction_n + MASS_OFF * applied_n + now.error_n;
+        let by_hand = |seen: &Parabola<D>| {
+            let applied_n = past.range(seen.span_s, &SVector::zeros()).max_n;
+            seen.hand_n.norm() > friction_n + MASS_OFF * applied_n + seen.error_n
+        };
+        let longer = if since.faded_s > JUDGED_LONG_S { past.parabola(JUDGED_LONG_S) } else { None };
+        let pulls = by_hand(now) || longer.is_some_and(|longer| by_hand(&longer));
         since.lasted_s += dt_s;
         since.faded_s = if self.withheld >= 1.0 { since.faded_s + dt_s } else { 0.0 };
         since.pulls_s =

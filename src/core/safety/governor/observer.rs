@@ -25,15 +25,18 @@ pub(super) const ROOM: usize = 96;
 const SPACING_S: f64 = 0.4e-3;
 /// After a longer gap nothing is known of the force in it: a device takes its force off by itself when no command comes, s.
 const GAP_S: f64 = 0.010;
-/// A hand that moves by so many steps of the reading between two samples does not stand still between the next two.
+/// A handle that moved by this many steps of the reading moves on by at least one; a reading that repeats the one before is old.
 const MOVES_STEPS: f64 = 3.0;
-/// Shortest time between two samples in which such a motion must show, s.
+/// Shortest time between two readings in which such a motion must show, s, and the longest for which an old reading is passed over.
 const SHOWS_S: f64 = 0.7e-3;
-/// Repeated readings while the handle moves, of which each counts for `REMEMBERED_S` (s): with more than this the times of the readings
-/// are not those of the motion. An emulated handle that steps in a thread of its own repeats 3 % of them.
-const REPEATED_MAX: f64 = 1.0;
-const REMEMBERED_S: f64 = 5.0;
-const REPEATED_MOST: f64 = 4.0;
+const OLD_S: f64 = 5e-3;
+/// The times of readings are judged while the handle moves faster than this, m/s, and over spacings up to this, s.
+const MOVES_M_S: f64 = 0.01;
+const CLOSE_S: f64 = 6e-3;
+/// A hand bends the path between readings no more than this acceleration does, m/s^2.
+const BENDS_M_S2: f64 = 6.0;
+/// The largest error of the times is remembered for this time, s: longer than two clocks of 1 kHz need to drift apart by a period.
+const REMEMBERED_S: f64 = 60.0;
 /// Least mass that is believed, kg: a lighter handle moves farther in a tick than can be judged.
 const MIN_KG: f64 = 0.01;
 
@@ -57,7 +60,8 @@ pub(super) struct Observer<const D: usize> {
     over_s: f64,
     /// How far the newest sample lies from the one before, m.
     moved_m: f64,
-    repeated: f64,
+    /// Largest error of the times of readings, s, fading.
+    inexact_s: f64,
 }
 
 impl<const D: usize> Observer<D> {
@@ -72,7 +76,7 @@ impl<const D: usize> Observer<D> {
             impulse_n_s: SVector::zeros(),
             over_s: 0.0,
             moved_m: 0.0,
-            repeated: 0.0,
+            inexact_s: 0.0,
         }
     }
 
@@ -96,37 +100,49 @@ impl<const D: usize> Observer<D> {
             let since_s = t_s - self.ring[self.newest].t_s;
             if !(-GAP_S..=GAP_S).contains(&since_s) {
                 self.forget();
-            } else if since_s < SPACING_S {
+            } else if since_s < SPACING_S || self.is_old(since_s, &at_m) {
                 return;
             } else if self.over_s > 0.0 {
                 self.ring[self.newest].applied_n = self.impulse_n_s / self.over_s;
             }
-            self.notice_repeats((at_m - self.ring[self.newest].at_m).norm(), since_s);
+            self.moved_m = (at_m - self.ring[self.newest].at_m).norm();
+            self.inexact_s *= 1.0 - since_s.max(0.0) / REMEMBERED_S;
         }
         self.newest = (self.newest + 1) % ROOM;
         self.ring[self.newest] = Sample { t_s, at_m, applied_n: SVector::zeros() };
         self.count = (self.count + 1).min(ROOM);
         self.impulse_n_s = SVector::zeros();
         self.over_s = 0.0;
+        self.judge_times();
     }
 
-    fn notice_repeats(&mut self, moved_m: f64, since_s: f64) {
-        let must_move = self.moved_m >= MOVES_STEPS * self.handle.step_m && since_s >= SHOWS_S;
-        let repeats = must_move && moved_m == 0.0;
-        self.repeated = (self.repeated - since_s.max(0.0) / REMEMBERED_S).max(0.0);
-        self.repeated = (self.repeated + f64::from(u8::from(repeats))).min(REPEATED_MOST);
-        self.moved_m = moved_m;
+    /// The handle moves, and the reading repeats the one before: the device has not read it again.
+    fn is_old(&self, since_s: f64, at_m: &SVector<f64, D>) -> bool {
+        let must_move = self.moved_m >= MOVES_STEPS * self.handle.step_m && (SHOWS_S..OLD_S).contains(&since_s);
+        must_move && *at_m == self.ring[self.newest].at_m
     }
 
-    /// The readings repeat themselves while the handle moves: each may be a millisecond older than its time, and no force follows from
-    /// them.
-    pub(super) fn times_are_unknown(&self) -> bool {
-        self.repeated > REPEATED_MAX
+    /// How far the last three readings are from lying on one path at their times.
+    fn judge_times(&mut self) {
+        if self.count < 3 {
+            return;
+        }
+        let at = |back: usize| &self.ring[(self.newest + ROOM - back) % ROOM];
+        let [new, mid, old] = [at(0), at(1), at(2)];
+        let [after_s, before_s] = [new.t_s - mid.t_s, mid.t_s - old.t_s];
+        let speed_m_s = (new.at_m - old.at_m).norm() / (after_s + before_s);
+        if after_s > CLOSE_S || before_s > CLOSE_S || speed_m_s < MOVES_M_S {
+            return;
+        }
+        let between_m = (new.at_m * before_s + old.at_m * after_s) / (after_s + before_s);
+        let bend_m = 0.5 * BENDS_M_S2 * after_s * before_s + self.handle.step_m;
+        let off_m = ((mid.at_m - between_m).norm() - bend_m).max(0.0);
+        self.inexact_s = self.inexact_s.max(2.0 * off_m / speed_m_s);
     }
 
     /// The samples relative to the newest one.
     pub(super) fn past(&self) -> Past<D> {
-        let mut past = Past::blank(self.handle, self.count);
+        let mut past = Past::blank(self.handle, self.count, self.inexact_s);
         let now = self.ring[self.newest];
         let mut impulse_n_s = SVector::<f64, D>::zeros();
         let mut twice_n_s2 = SVector::<f64, D>::zeros();
@@ -155,6 +171,8 @@ impl<const D: usize> Observer<D> {
 pub(super) struct Past<const D: usize> {
     pub(super) handle: Handle,
     pub(super) count: usize,
+    /// Error of the times, s.
+    pub(super) inexact_s: f64,
     /// The newest reading, m.
     pub(super) at_m: SVector<f64, D>,
     /// Time after the newest sample, s: none is above 0.
@@ -170,11 +188,12 @@ pub(super) struct Past<const D: usize> {
 }
 
 impl<const D: usize> Past<D> {
-    fn blank(handle: Handle, count: usize) -> Self {
+    fn blank(handle: Handle, count: usize, inexact_s: f64) -> Self {
         let zeros = [SVector::zeros(); ROOM];
         Self {
             handle,
             count,
+            inexact_s,
             at_m: SVector::zeros(),
             t_s: [0.0; ROOM],
             from_now_m: zeros,

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::{
     hand::{Hand, Intention, within},
     kind::Kind,
-    person::{HANDLE_KG, Person, SIDEWAYS},
+    person::{HANDLE_KG, Person, SIDEWAYS, between},
 };
 use crate::pair::RATE_HZ;
 
@@ -140,6 +140,7 @@ impl Watch {
 #[derive(Debug)]
 struct Side<const D: usize, G> {
     hand: Hand<D>,
+    reader: Reader<D>,
     gate: G,
     asked_n: SVector<f64, D>,
     /// Where the tissue was entered, m.
@@ -163,6 +164,7 @@ pub(super) fn held<const D: usize, G: Gate<D>>(
     loop {
         for side in &mut sides {
             side.hand.step(&mut noise);
+            side.reader.step(&side.hand, kind, &mut noise);
         }
         let now_s = sides[0].hand.now_s();
         if now_s + 1e-9 < next_s {
@@ -198,6 +200,7 @@ fn sides<const D: usize, G: Gate<D>>(kind: &Kind, noise: &mut Noise, gate: impl 
     }
     let side = |person: Person<D>| Side {
         hand: Hand::new(person, Intention::Reaches(person.reaches()), kind.gripper),
+        reader: Reader::new(),
         gate: gate(),
         asked_n: SVector::zeros(),
         entry_m: None,
@@ -217,7 +220,7 @@ impl<const D: usize, G: Gate<D>> Side<D, G> {
         let wanted_n = within(self.pressed_n(shared_m.unwrap_or_else(|| self.late_depth_m())), CEILING_N);
         let change_n = SLEW_N_PER_S * dt_s.min(PERIOD_S);
         self.asked_n += within(wanted_n - self.asked_n, change_n);
-        let governed = self.gate.step(now_s, reading(now_s, &self.hand, kind), self.asked_n);
+        let governed = self.gate.step(now_s, self.reader.reading(now_s, &self.hand, kind), self.asked_n);
         self.watch.tick(dt_s, &self.hand.force_n, &governed, &self.asked_n);
         self.hand.force_n = governed.force_n;
     }
@@ -236,8 +239,37 @@ impl<const D: usize, G: Gate<D>> Side<D, G> {
     }
 }
 
-/// The handle as its device reads it, with the time at which the device believes to have read it.
-pub(super) fn reading<const D: usize>(now_s: f64, hand: &Hand<D>, kind: &Kind) -> Reading<D> {
-    let at_m = hand.before_m(kind.late_s).map(|x| (x / kind.step_m).floor() * kind.step_m);
-    Reading { t_s: now_s, at_m }
+/// How likely the device pauses before its next reading, and for how long, s: a thread of ordinary priority.
+const PAUSES: f64 = 0.005;
+const PAUSE_S: [f64; 2] = [0.5e-3, 4e-3];
+
+/// The handle as its device reads it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reader<const D: usize> {
+    newest: Option<SVector<f64, D>>,
+    next_s: f64,
+}
+
+impl<const D: usize> Reader<D> {
+    pub(super) const fn new() -> Self {
+        Self { newest: None, next_s: 0.0 }
+    }
+
+    /// Moves to the present; call after each step of the hand.
+    pub(super) fn step(&mut self, hand: &Hand<D>, kind: &Kind, noise: &mut Noise) {
+        if kind.reads_every_s > 0.0 && hand.now_s() >= self.next_s {
+            self.newest = Some(position(hand, kind));
+            let pause_s = if noise.uniform() < PAUSES { between(noise, PAUSE_S) } else { 0.0 };
+            self.next_s += kind.reads_every_s + pause_s;
+        }
+    }
+
+    /// The newest position, with the time at which the loop believes it was read.
+    pub(super) fn reading(&self, now_s: f64, hand: &Hand<D>, kind: &Kind) -> Reading<D> {
+        Reading { t_s: now_s, at_m: self.newest.unwrap_or_else(|| position(hand, kind)) }
+    }
+}
+
+fn position<const D: usize>(hand: &Hand<D>, kind: &Kind) -> SVector<f64, D> {
+    hand.before_m(kind.late_s).map(|x| (x / kind.step_m).floor() * kind.step_m)
 }

@@ -30,6 +30,8 @@ pub struct Kind {
     pub step_m: f64,
     /// Time by which a reading is older than its time stamp, s.
     pub late_s: f64,
+    /// Period at which the device reads on a clock of its own, s; 0: at the loop's request. A reading is then up to this much older.
+    pub reads_every_s: f64,
     /// Error of the handle's mass, as a fraction to both sides.
     pub mass_error: f64,
     /// Coulomb friction up to this, N, and viscous friction up to this, N s/m.
@@ -49,13 +51,14 @@ impl Kind {
         hand_kg: 0.0,
         step_m: 1e-5,
         late_s: 0.0,
+        reads_every_s: 0.0,
         mass_error: 0.2,
         coulomb_n: 0.15,
         damping_n_s_m: 1.0,
     };
 
     /// Every kind, in the order of the tables.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::USUAL,
         Self { name: "to both sides", targets: Targets::Within70Mm, ..Self::USUAL },
         Self { name: "in space", space: true, ..Self::USUAL },
@@ -66,6 +69,7 @@ impl Kind {
         Self { name: "steps of 40 um", step_m: 4e-5, ..Self::USUAL },
         Self { name: "1 ms late", late_s: 1e-3, ..Self::USUAL },
         Self { name: "3 ms late", late_s: 3e-3, ..Self::USUAL },
+        Self { name: "own clock", reads_every_s: 1.003e-3, ..Self::USUAL },
         Self { name: "other mass", mass_error: 0.25, ..Self::USUAL },
         Self { name: "more friction", coulomb_n: 0.3, damping_n_s_m: 2.0, ..Self::USUAL },
         Self {

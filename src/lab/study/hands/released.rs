@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{
     hand::{Hand, Intention},
-    held::{Gate, governor, reading},
+    held::{Gate, Reader, governor},
     kind::Kind,
     person::{Person, between, direction},
 };
@@ -114,6 +114,7 @@ pub(super) fn released<const D: usize, G: Gate<D>>(
     let drift_m_s = DRIFT_M_S * between(&mut noise, [-1.0, 1.0]).max(0.0);
     let drift = Intention::Drifts(direction::<D>(&mut noise) * drift_m_s);
     let mut hand = Hand::new(person, drift, false);
+    let mut reader = Reader::new();
     let release_s = between(&mut noise, RELEASE_S);
     let swing_s = person.handle_kg / person.damping_n_s_m;
     let mut times = clock.tick_times(RATE_HZ);
@@ -131,13 +132,14 @@ pub(super) fn released<const D: usize, G: Gate<D>>(
             found.energy_j = found.energy_j.max(0.5 * person.handle_kg * hand.velocity_m_s.norm_squared());
         }
         hand.step(&mut noise);
+        reader.step(&hand, kind, &mut noise);
         let now_s = hand.now_s();
         if now_s + 1e-9 < next_s {
             continue;
         }
         next_s = times.advance().now_s;
         let asked_n = along * (force_n * (now_s / RISE_S).min(1.0));
-        let governed = gate.step(now_s, reading(now_s, &hand, kind), asked_n);
+        let governed = gate.step(now_s, reader.reading(now_s, &hand, kind), asked_n);
         hand.carried_n = asked_n;
         hand.force_n = governed.force_n;
         if now_s < release_s {

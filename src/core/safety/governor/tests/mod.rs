@@ -290,22 +290,38 @@ fn a_hand_that_withdraws_loses_next_to_nothing() {
 }
 
 #[test]
-fn a_handle_read_by_a_thread_that_is_late_now_and_then_is_not_braked() {
+fn a_handle_read_on_another_clock_is_braked_only_when_it_is_let_go() {
+    const RELEASE_S: f64 = 4.0;
     let handle = Handle { mass_kg: 0.25, damping_n_s_m: 0.5, brake_n_s_m: 30.0, step_m: 1e-5 };
     let mut governor = Governor::<1>::new(handle, 500.0, PERIOD_S);
     let mut noise = Noise::new(7);
-    let mut late = 0;
-    for tick in 0..4000_u32 {
-        let t_s = f64::from(tick) * PERIOD_S;
-        // The thread stands still for up to 4 ms now and then.
-        late = if (1..4).contains(&late) || noise.uniform() < 0.02 { late + 1 } else { 0 };
-        let moved_s = f64::from(tick - late.min(tick)) * PERIOD_S;
-        let at_m = (0.015 * (4.0 * moved_s).sin() * 1e5).round() * 1e-5;
-        // Free motion first: there the repeats show. Then the hand carries a force.
-        let asked_n = if t_s < 0.5 { 0.0 } else { 3.0 * (10.0 * (t_s - 0.5)).min(1.0) };
-        let governed = governor.step(t_s, Some(Reading { t_s, at_m: [at_m].into() }), [asked_n].into());
-        assert!((governed.force_n.x - asked_n).abs() < 1e-9, "at {t_s} s: {governed:?}");
+    let (mut at_m, mut speed_m_s, mut held_n) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let (mut read_m, mut next_read_s) = (0.0, 0.0);
+    let mut released_m = 0.0;
+    for step in 0..43_000_u32 {
+        let t_s = f64::from(step) * 1e-4;
+        // The device reads every 1.003 ms, and pauses for up to 4 ms now and then.
+        if t_s >= next_read_s {
+            read_m = (at_m * 1e5).round() * 1e-5;
+            next_read_s += 1.003e-3 + if noise.uniform() < 0.01 { 4e-3 * noise.uniform() } else { 0.0 };
+        }
+        // Free motion first: there the error of the times shows. Then the hand carries a force.
+        let asked_n = 3.0 * (10.0 * (t_s - 0.5)).clamp(0.0, 1.0);
+        if step % 10 == 0 {
+            let governed = governor.step(t_s, Some(Reading { t_s, at_m: [read_m].into() }), [asked_n].into());
+            assert!(t_s > RELEASE_S || (governed.force_n.x - asked_n).abs() < 1e-9, "at {t_s} s: {governed:?}");
+            held_n = governed.force_n.x;
+        }
+        let (aim_m, aim_m_s) = (0.015 * (4.0 * t_s).sin(), 0.06 * (4.0 * t_s).cos());
+        let hand_n =
+            if t_s < RELEASE_S { 900.0 * (aim_m - at_m) + 20.0 * (aim_m_s - speed_m_s) - asked_n } else { 0.0 };
+        if t_s < RELEASE_S {
+            released_m = at_m;
+        }
+        speed_m_s += (held_n + hand_n - 0.5 * speed_m_s) / 0.25 * 1e-4;
+        at_m += speed_m_s * 1e-4;
     }
+    assert!((at_m - released_m).abs() < 0.02 && held_n.abs() < 0.1, "{} m, {held_n} N", at_m - released_m);
 }
 
 #[test]

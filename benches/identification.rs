@@ -213,6 +213,7 @@ fn ratios(window: usize) {
 }
 
 fn main() {
+    nima_baselines::provide();
     if ratio::alone() {
         [300, 3000].into_iter().for_each(ratios);
         return;

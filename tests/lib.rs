@@ -12,8 +12,9 @@ pub mod studies;
 use nima_machine::config::RigConfig;
 use nima_simulation::{Plan, scene::Scene};
 
-/// The simulated rig in this scene, without calibrations; it engages by itself.
+/// The simulated rig in this scene, without calibrations; it engages by itself. The methods of others can be chosen in it.
 pub fn plan(scene: &str) -> Plan {
+    nima_baselines::provide();
     Plan {
         rig: RigConfig::load("simulated").unwrap(),
         scene: Scene::load(scene).unwrap(),

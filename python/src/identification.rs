@@ -116,15 +116,15 @@ impl Rows {
 
 impl Parcels {
     fn push(&mut self, parcel: &Parcel, axes: usize) {
-        self.literal.push(&parcel.literal, axes);
-        self.linear.push(&parcel.linear, axes);
-        let anchored = &parcel.anchored;
+        self.literal.push(&parcel.models.literal, axes);
+        self.linear.push(&parcel.models.linear, axes);
+        let anchored = &parcel.models.anchored;
         self.anchored_motion.extend(anchored.motion.iter().flat_map(|column| (0..axes).map(move |lane| column[lane])));
         self.anchored_constant_n.extend((0..axes).map(|lane| anchored.constant_n[lane]));
         self.anchored_gain.push(anchored.gain);
         self.anchored_degree.push(anchored.degree);
-        self.matched_degree.push(parcel.matched.degree);
-        self.nima_degree.push(parcel.nima.degree);
+        self.matched_degree.push(parcel.models.matched.degree);
+        self.nima_degree.push(parcel.models.nima.degree);
         self.resting.push(parcel.resting);
     }
 

@@ -22,4 +22,10 @@ mod native {
         session::Session,
         tip_force::TipForceModel,
     };
+
+    #[pymodule_init]
+    fn init(_module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        nima_baselines::provide();
+        Ok(())
+    }
 }

@@ -14,9 +14,9 @@ use crate::{
     objects::{Jaws, Mark, Objects, Standing, WireLoop},
 };
 
-/// Version of the bundles; other versions are refused.
-const VERSION: u8 = 4;
-/// Time between two ticks of a bundle, s: the resolution of a trace on a screen.
+/// Version of the bundles, whose values are coded as those of a journal are; another one is refused.
+const VERSION: u8 = crate::journal::VERSION as u8;
+/// Time between two ticks of a bundle, s: what a trace on a screen can show.
 const STEP_S: f64 = 0.005;
 /// Maximum number of moments of a bundle, and of events of a moment.
 const MOST: u64 = 1024;

@@ -1,6 +1,7 @@
-//! Shared by the tests of every crate: tests in real time, reports of tests that could not judge, seeds for random
-//! loops, and one set of features for the libraries that several crates use (see `Cargo.toml` in this folder).
+//! What the tests of every crate share: judging in real time, reports of tests that could not judge, seeds for random loops, contrast of colours, and one set of
+//! features of the libraries that several crates use (see `Cargo.toml` beside this file).
 
+pub mod contrast;
 pub mod fuzz;
 pub mod real_time;
 pub mod unjudged;

@@ -77,6 +77,7 @@ fn identification_and_rendering_allocate_nothing() {
 #[test]
 fn baselines_allocate_nothing() {
     let _alone = alone();
+    nima_baselines::provide();
     for mode in Mode::BASELINES {
         let settings = Settings { modes: ModeSet::only(mode), delay_s: 0.05, ..Settings::default() };
         run_both_ends(&settings, mode.name());

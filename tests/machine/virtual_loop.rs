@@ -97,6 +97,7 @@ fn every_baseline_runs_behind_the_gates() {
 
 #[test]
 fn of_the_baselines_only_the_one_of_the_rig_can_be_chosen() {
+    nima_baselines::provide();
     for mode in Mode::BASELINES {
         let rig = RigConfig { mode, ..RigConfig::load("simulated").unwrap() };
         let mut pair = Pair::new(&rig, Side::Right, &Calibrations::default()).unwrap();

@@ -9,13 +9,14 @@
 //! between one and the sum of the weights.
 
 use super::{
-    Mode,
+    Mode, Models,
     envelope::Envelope,
-    messages::{AnchoredModel, Parcel, Report, clip},
-    method::{Method, Seen},
+    messages::{Parcel, Posture, Report, clip},
+    method::{Follower, Leader, Method, Moment, Place, Seen},
     mixture::Mixture,
+    packed::{Numbers, Reader, Writer},
     regression::{LENGTHS, NESTED, RIDGES, Regression, Solutions, predict},
-    regressors::{Background, REGRESSORS, Regressors, Stance, Surroundings, at},
+    regressors::{Background, REGRESSORS, Regressors, Stance, Surroundings, at, motion_changes},
     settings::{MAX_DELAY_S, ModeSet, Settings},
 };
 use crate::signal::{DelayLine, Lanes, settled};
@@ -37,8 +38,122 @@ const EARLY_CAUTION: f64 = 0.6;
 const FIRST_CAUTION: f64 = 0.2;
 const FIRST_S: f64 = 0.3;
 
+/// Anchored rendering.
 #[derive(Clone, Debug)]
-pub(super) struct Anchored {
+pub(super) struct Anchored;
+
+impl Method for Anchored {
+    const NAME: &'static str = "anchored";
+    const ABOUT: &'static str = "our rendering: delayed force plus its learned change";
+    const PARAMETERS: Option<Place> = Some(|models| &mut models.anchored);
+
+    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        Some(Box::new(Learner::new(settings, delay_ticks)))
+    }
+
+    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+        Box::new(Self)
+    }
+
+    fn degree(report: &Report) -> u8 {
+        report.degree
+    }
+
+    fn note(models: &Models, report: &mut Report) {
+        report.degree = models.anchored.degree;
+        report.gain = models.anchored.gain;
+    }
+}
+
+impl Leader for Anchored {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        Some(moment.parcel.models.anchored.force(moment.measured_n, moment.now, moment.then))
+    }
+}
+
+/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts folded into one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnchoredModel {
+    /// N per change of position (m), of its differences from four low-passes (m), of friction
+    /// (1), of square, cube and product of the position about the centre (m², m³, m²).
+    pub motion: [Lanes; 9],
+    /// What the follower alone knows: the change expected without any motion (N).
+    pub constant_n: Lanes,
+    /// Slow mean of the follower's position (m).
+    pub centre_m: Lanes,
+    /// Where friction saturates (m).
+    pub knee: Lanes,
+    /// Least force rendered (N): forces beyond those seen are not invented.
+    pub low_n: Lanes,
+    /// Greatest force rendered (N).
+    pub high_n: Lanes,
+    /// Largest correction (N, norm over the axes).
+    pub bound_n: f64,
+    /// Highest power of the position in the model that most of the weight is on, 1 or 3; 0 without a correction.
+    pub degree: u8,
+    /// How much of a full correction this is, 0 (plain reflection) to 1, on the axis that is corrected most.
+    pub gain: f64,
+}
+
+impl AnchoredModel {
+    /// No correction.
+    pub const NONE: Self = Self {
+        motion: [Lanes::ZERO; 9],
+        constant_n: Lanes::ZERO,
+        centre_m: Lanes::ZERO,
+        knee: Lanes::ZERO,
+        low_n: Lanes::ZERO,
+        high_n: Lanes::ZERO,
+        bound_n: 0.0,
+        degree: 0,
+        gain: 0.0,
+    };
+
+    /// The force (N) for the motion now, from the force and the motion at the anchor. The force as it came where nothing is
+    /// corrected or the correction is not finite.
+    pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
+        if self.gain <= 0.0 {
+            return measured;
+        }
+        let changes = motion_changes(&now.stance, &then.stance, self.centre_m, self.knee);
+        let correction = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
+        if correction.is_finite() {
+            (measured + clip(correction, self.bound_n)).within(self.low_n, self.high_n)
+        } else {
+            measured
+        }
+    }
+}
+
+impl Numbers for AnchoredModel {
+    const NONE: Self = Self::NONE;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        row.put(f64::from(self.degree));
+        row.put(self.gain);
+        row.put(self.bound_n);
+        for lanes in [self.constant_n, self.centre_m, self.knee, self.low_n, self.high_n] {
+            row.lanes(lanes);
+        }
+        row.row(&self.motion);
+    }
+
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        let degree = row.count(3)? as u8;
+        let gain = row.take()?;
+        let bound_n = row.take()?;
+        let constant_n = row.lanes()?;
+        let centre_m = row.lanes()?;
+        let knee = row.lanes()?;
+        let low_n = row.lanes()?;
+        let high_n = row.lanes()?;
+        Some(Self { motion: row.row()?, constant_n, centre_m, knee, low_n, high_n, bound_n, degree, gain })
+    }
+}
+
+/// The follower's part.
+#[derive(Clone, Debug)]
+struct Learner {
     rate_hz: f64,
     delay_ticks: usize,
     every: usize,
@@ -47,7 +162,7 @@ pub(super) struct Anchored {
     regression: Regression,
     /// Solutions of each ridge.
     found: [DelayLine<Solutions>; RIDGES],
-    moments: DelayLine<Moment>,
+    moments: DelayLine<Instant>,
     mixture: Mixture<EXPERTS>,
     largest_change_n: f64,
     envelope: Envelope,
@@ -56,14 +171,14 @@ pub(super) struct Anchored {
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Moment {
+struct Instant {
     good: bool,
     stance: Stance,
     background: Background,
 }
 
-impl Anchored {
-    pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
+impl Learner {
+    fn new(settings: &Settings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
         let every = ((rate_hz / SOLVE_HZ).round() as usize).max(1);
         let max_delay = (MAX_DELAY_S * rate_hz).ceil() as usize;
@@ -75,7 +190,7 @@ impl Anchored {
             surroundings: Surroundings::new(settings),
             regression: Regression::new(rate_hz),
             found: std::array::from_fn(|_| DelayLine::new(max_delay / every + 1, UNKNOWN)),
-            moments: DelayLine::new(max_delay, Moment::default()),
+            moments: DelayLine::new(max_delay, Instant::default()),
             mixture: Mixture::new(rate_hz),
             largest_change_n: 0.0,
             envelope: Envelope::new(rate_hz),
@@ -92,7 +207,7 @@ impl Anchored {
         if learn {
             self.envelope.see(force_n, 1.0);
         }
-        self.moments.push(Moment { good, stance: *stance, background });
+        self.moments.push(Instant { good, stance: *stance, background });
         if let Some(then) = self.moments.get(d).filter(|then| d > 0 && learn && good && then.good).copied() {
             let q = then.background.regressors(stance, &then.stance);
             let change = force_n - then.background.force_n;
@@ -233,16 +348,16 @@ impl Anchored {
     }
 }
 
-impl Method for Anchored {
+impl Follower for Learner {
     fn serves(&self, modes: ModeSet) -> bool {
         modes.contains(Mode::Anchored)
     }
 
     fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
-        parcel.anchored = self.step(&seen.posture.stance, seen.force_n, seen.good, seen.learn);
+        parcel.models.anchored = self.step(&seen.posture.stance, seen.force_n, seen.good, seen.learn);
         if seen.learn {
-            report.degree = parcel.anchored.degree;
-            report.gain = parcel.anchored.gain;
+            report.degree = parcel.models.anchored.degree;
+            report.gain = parcel.models.anchored.gain;
             report.restarts = self.restarts;
         }
     }
@@ -260,9 +375,4 @@ impl Method for Anchored {
         self.restarts = 0;
         self.forget();
     }
-}
-
-#[inline]
-pub(super) fn within(value: Lanes, low: Lanes, high: Lanes) -> Lanes {
-    value.zip(low, f64::max).zip(high, f64::min)
 }

@@ -3,8 +3,9 @@
 //! The constants were chosen on four recordings of the first rig and on sequences of changing tissue.
 
 use super::{
-    Mode,
-    messages::Parcel,
+    Mode, SLOTS,
+    messages::{Parcel, Report},
+    method::{Leader, Method, Moment},
     pace::{newest_share, share},
     settings::{MAX_DELAY_S, Settings},
 };
@@ -25,10 +26,52 @@ const TRIAL_S: f64 = 4.0;
 /// Errors below this count as equal (N): below it both weights would divide rounding by rounding.
 const EQUAL_N: f64 = 1e-12;
 
-/// A softmin, per axis, of the running errors of the forces that the leader itself rendered, evaluated by the force
-/// that a packet brings one delay later. The follower cannot do this: it does not have the motion from which the leader
-/// computes the force, and the error of matched rendering is the stiffness times the error of that motion. A zero-order
-/// hold needs no separate weight: anchored rendering is a hold wherever its correction does not help.
+/// The mixture of anchored and matched rendering.
+#[derive(Clone, Debug)]
+pub(super) struct Best {
+    /// Only where the mode is computed.
+    judge: Option<Judge>,
+}
+
+impl Method for Best {
+    const NAME: &'static str = "best";
+    const ABOUT: &'static str = "anchored and matched, weighted by their recent errors";
+    const PARTS: &'static [Mode] = &[Mode::Anchored, Mode::Matched];
+
+    fn leader(settings: &Settings) -> Box<dyn Leader> {
+        Box::new(Self { judge: settings.modes.contains(Mode::Best).then(|| Judge::new(settings)) })
+    }
+
+    fn degree(report: &Report) -> u8 {
+        report.matched_degree
+    }
+}
+
+impl Leader for Best {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        let weight = self.judge.as_ref().map_or(Lanes::ZERO, Judge::anchored);
+        let anchored = moment.forces_n[Mode::Anchored.index()]?;
+        let matched = moment.forces_n[Mode::Matched.index()];
+        Some(matched.map_or(anchored, |matched| matched + (anchored - matched) * weight))
+    }
+
+    fn keep(&mut self, forces_n: &[Option<Lanes>; SLOTS], pace: f64) {
+        self.judge.iter_mut().for_each(|judge| judge.say(forces_n, pace));
+    }
+
+    fn judge(&mut self, parcel: &Parcel, age_ticks: usize) {
+        self.judge.iter_mut().for_each(|judge| judge.hear(parcel, age_ticks));
+    }
+
+    fn reset(&mut self) {
+        self.judge.iter_mut().for_each(Judge::reset);
+    }
+}
+
+/// A softmin, per axis, of the running errors of what the leader itself rendered, judged by the force that a parcel brings one
+/// delay later. The follower cannot judge this: it does not know the motion from which the leader makes the force, and matched
+/// rendering errs by the stiffness times what that motion is wrong. Holding needs no weight of its own: anchored rendering is
+/// holding wherever its correction does not help.
 ///
 /// On another tissue both err at first: anchored rendering for one delay, matched rendering until it has learned the
 /// tissue. Because the errors of both are known one delay late, both look bad for as long again. A lasting error of
@@ -38,7 +81,7 @@ const EQUAL_N: f64 = 1e-12;
 /// therefore evaluated over some touches: the more it errs beyond anchored rendering, the smaller the weight of matched
 /// rendering.
 #[derive(Clone, Debug)]
-pub(super) struct Best {
+struct Judge {
     rate_hz: f64,
     said: DelayLine<Said>,
     judged: f64,
@@ -98,8 +141,8 @@ impl Lasting {
     }
 }
 
-impl Best {
-    pub(super) fn new(settings: &Settings) -> Self {
+impl Judge {
+    fn new(settings: &Settings) -> Self {
         let none = Lanes::ZERO;
         Self {
             rate_hz: settings.rate_hz,
@@ -113,21 +156,20 @@ impl Best {
         }
     }
 
-    /// Returns the weight of anchored rendering, 0 to 1; matched rendering has the remainder, and all weight until the
-    /// first evaluation.
-    pub(super) const fn anchored(&self) -> Lanes {
+    /// The weight of anchored rendering, 0 to 1; matched rendering has the rest, and everything until the first judgement.
+    const fn anchored(&self) -> Lanes {
         self.anchored
     }
 
-    /// Stores the force rendered in this tick by each mode ([`Mode::index`]).
-    pub(super) fn say(&mut self, forces_n: &[Option<Lanes>], pace: f64) {
+    /// Keeps what was rendered in this tick by each mode ([`Mode::index`]).
+    fn say(&mut self, forces_n: &[Option<Lanes>], pace: f64) {
         let of = |mode: Mode| forces_n[mode.index()];
         let both = of(Mode::Anchored).zip(of(Mode::Matched)).zip(of(Mode::Best));
         self.said.push(Said { forces_n: both.map(|((anchored, matched), mixed)| [anchored, matched, mixed]), pace });
     }
 
-    /// Evaluates the forces rendered `age` ticks ago by the force of that time, which has just arrived.
-    pub(super) fn hear(&mut self, parcel: &Parcel, age: usize) {
+    /// Judges what was rendered `age` ticks ago by the force of that time, which has just come.
+    fn hear(&mut self, parcel: &Parcel, age: usize) {
         if !parcel.modes.contains(Mode::Best) {
             self.forget();
             return;
@@ -166,7 +208,7 @@ impl Best {
         self.trial = Trial::default();
     }
 
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.said.clear();
         self.forget();
     }
@@ -197,12 +239,12 @@ mod tests {
 
     const DELAY: usize = 100;
 
-    /// A leader that receives a force of `0` where `errors_n` (anchored, matched) was predicted one delay before.
-    struct Bench(Best);
+    /// A leader that hears of a force of `0` what `errors_n` (anchored, matched) said one delay before.
+    struct Bench(Judge);
 
     impl Bench {
         fn new() -> Self {
-            Self(Best::new(&Settings::default()))
+            Self(Judge::new(&Settings::default()))
         }
 
         /// Runs for some ticks; returns the weight of anchored rendering afterwards.

@@ -7,7 +7,7 @@ use super::{
     horizon::Horizon,
     information::{excitation, rank},
     messages::{Parcel, Report, active},
-    method::{Method, Seen},
+    method::{Follower, Seen},
     settings::{ModeSet, Settings},
     solution::Solution,
     window::SlidingWindow,
@@ -42,13 +42,9 @@ impl Degrees {
     pub(super) fn are_wanted(modes: ModeSet) -> bool {
         modes.contains(Mode::Anchored) && modes.contains(Mode::Literal)
     }
-
-    pub(super) const fn solution(&self) -> &Solution {
-        &self.solution
-    }
 }
 
-impl Method for Degrees {
+impl Follower for Degrees {
     fn serves(&self, modes: ModeSet) -> bool {
         Self::are_wanted(modes)
     }
@@ -84,5 +80,9 @@ impl Method for Degrees {
     fn reset(&mut self) {
         self.window.reset();
         self.horizon.reset();
+    }
+
+    fn nested(&self) -> Option<&Solution> {
+        Some(&self.solution)
     }
 }

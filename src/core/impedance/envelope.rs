@@ -8,18 +8,19 @@ const MARGIN: f64 = 0.1;
 
 /// Minimum and maximum force per axis, leaking towards their middle.
 #[derive(Clone, Debug)]
-pub(super) struct Envelope {
+pub struct Envelope {
     leak: f64,
     edges_n: Option<[Lanes; 2]>,
 }
 
 impl Envelope {
-    pub(super) const fn new(rate_hz: f64) -> Self {
+    /// Nothing was seen, at this rate, Hz.
+    pub const fn new(rate_hz: f64) -> Self {
         Self { leak: 1.0 / (MEMORY_S * rate_hz), edges_n: None }
     }
 
-    /// Adds a force (N); `pace`: speed of the clock, 1 for real time.
-    pub(super) fn see(&mut self, force_n: Lanes, pace: f64) {
+    /// Takes a force (N); `pace`: how fast time runs, 1 by the clock on the wall.
+    pub fn see(&mut self, force_n: Lanes, pace: f64) {
         let [low, high] = self.edges_n.unwrap_or([force_n; 2]);
         let middle = (low + high) * 0.5;
         let leak = self.leak * pace;
@@ -27,14 +28,15 @@ impl Envelope {
         self.edges_n = Some([leaked(low).zip(force_n, f64::min), leaked(high).zip(force_n, f64::max)]);
     }
 
-    /// Returns the minimum and maximum force to render (N): the range and its margin; zero before the first force.
-    pub(super) fn bounds_n(&self) -> [Lanes; 2] {
+    /// Least and greatest force to render (N): the range and its margin; zero before any force was seen.
+    pub fn bounds_n(&self) -> [Lanes; 2] {
         let [low, high] = self.edges_n.unwrap_or_default();
         let margin = (high - low) * MARGIN;
         [low - margin, high + margin]
     }
 
-    pub(super) fn reset(&mut self) {
+    /// Forgets everything.
+    pub fn reset(&mut self) {
         self.edges_n = None;
     }
 }

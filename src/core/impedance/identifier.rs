@@ -4,12 +4,10 @@ use nalgebra::Vector3;
 
 use super::{
     Mode, SLOTS,
-    best::Best,
     features::Features,
     literal::LiteralSolver,
-    matched::Slip,
     messages::{Parcel, Posture, Report, Sample, active},
-    method::{Method, Methods, Seen},
+    method::{Followers, Leaders, Seen},
     settings::{MAX_DELAY_S, ModeSet, Settings, SettingsError},
     solution::Solution,
     track::{Track, usable_force, usable_position},
@@ -62,10 +60,9 @@ pub struct Identifier {
     computed: ModeSet,
     /// Ticks since the last informative sample.
     idle_ticks: usize,
-    methods: Methods,
-    best: Option<Best>,
-    /// Springs of a leader that makes the follower's own motion.
-    slip: Slip,
+    followers: Followers,
+    /// Those of a leader that makes the follower's own motion.
+    leaders: Leaders,
     sent: DelayLine<(Parcel, Posture)>,
     forget: f64,
     parcel: Parcel,
@@ -88,9 +85,8 @@ impl Identifier {
             last_force_n: Lanes::ZERO,
             computed: settings.modes,
             idle_ticks: 0,
-            methods: Methods::new(settings, delay_ticks),
-            best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
-            slip: Slip::default(),
+            followers: Followers::new(settings, delay_ticks),
+            leaders: Leaders::new(settings),
             sent: DelayLine::new(max_delay, (Parcel::BLANK, Posture::BLANK)),
             forget: 1.0 - libm::exp(-1.0 / (ERROR_MEMORY_S * settings.rate_hz)),
             parcel: Parcel { modes: settings.modes, ..Parcel::BLANK },
@@ -105,9 +101,10 @@ impl Identifier {
         let modes = modes.with(Mode::Dfr).and(self.settings.modes);
         let before = std::mem::replace(&mut self.computed, modes);
         let begins = |mode: Mode| modes.contains(mode) && !before.contains(mode);
-        for method in self.methods.each().filter(|method| method.begins(before, modes)) {
-            method.reset();
+        for follower in self.followers.each().filter(|follower| follower.begins(before, modes)) {
+            follower.reset();
         }
+        self.leaders.each().for_each(|leader| leader.compute(before, modes));
         self.idle_ticks = 0;
         let Parcel { t_s, force_n, fresh, .. } = self.parcel;
         self.parcel = Parcel { t_s, force_n, fresh, modes, ..Parcel::BLANK };
@@ -156,8 +153,8 @@ impl Identifier {
             learn,
             sent: self.sent.get(self.delay_ticks.max(1) - 1).map(|(parcel, _)| parcel),
         };
-        for method in self.methods.each().filter(|method| method.serves(self.computed)) {
-            method.take(&seen, &mut self.parcel, &mut self.report);
+        for follower in self.followers.each().filter(|follower| follower.serves(self.computed)) {
+            follower.take(&seen, &mut self.parcel, &mut self.report);
         }
         self.sent.push((self.parcel, now));
         self.predict(&now, &x, good);
@@ -176,18 +173,13 @@ impl Identifier {
 
     /// Computes the force of every mode for this tick from the packet that is one delay old, and its running error.
     fn predict(&mut self, now: &Posture, x: &Features, good: bool) {
-        let leader = self.methods.baseline.as_deref_mut().map(|baseline| &mut baseline.leader);
-        let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
         let arrived = self.sent.get(self.delay_ticks).filter(|(parcel, _)| parcel.t_s.is_finite());
-        let forces = arrived.map_or([None; SLOTS], |(parcel, then)| {
-            parcel.render(now, then, x, &mut self.slip, weight, |model, force_n| {
-                leader.and_then(|leader| leader.step(model, force_n, now, self.delay_ticks))
-            })
-        });
-        if let Some(best) = &mut self.best {
-            best.say(&forces, now.stance.pace);
+        let forces = arrived
+            .map_or([None; SLOTS], |(parcel, then)| self.leaders.render(parcel, [now, then], x, self.delay_ticks));
+        for leader in self.leaders.each() {
+            leader.keep(&forces, now.stance.pace);
             if let Some((parcel, _)) = arrived {
-                best.hear(parcel, self.delay_ticks);
+                leader.judge(parcel, self.delay_ticks);
             }
         }
         for mode in self.settings.modes.modes() {
@@ -214,20 +206,20 @@ impl Identifier {
     /// Returns every nested solution on the newest window, in scaled columns (N); `None` unless both anchored and
     /// literal are computed.
     pub fn solution(&self) -> Option<&Solution> {
-        self.methods.degrees.as_ref().map(|degrees| degrees.solution())
+        self.followers.find(|follower| follower.nested())
     }
 
     /// Returns the paper's solutions of every degree on the newest window; `None` if neither literal nor linear is
     /// computed.
     pub fn literal(&self) -> Option<&LiteralSolver> {
-        self.methods.literal.as_ref().or(self.methods.linear.as_ref()).map(|paper| paper.solver())
+        self.followers.find(|follower| follower.paper())
     }
 
     /// Changes the programmed delay, exact to one sample, at most [`MAX_DELAY_S`]. The evaluation of anchored rendering
     /// restarts.
     pub fn set_delay(&mut self, delay_s: f64) {
         self.delay_ticks = self.settings.delay_ticks(delay_s);
-        self.methods.each().for_each(|method| method.set_delay(self.delay_ticks));
+        self.followers.each().for_each(|follower| follower.set_delay(self.delay_ticks));
     }
 
     pub fn reset(&mut self) {
@@ -235,12 +227,9 @@ impl Identifier {
         self.last_t_s = f64::NEG_INFINITY;
         self.last_force_n = Lanes::ZERO;
         self.idle_ticks = 0;
-        self.methods.each().for_each(Method::reset);
-        if let Some(best) = &mut self.best {
-            best.reset();
-        }
+        self.followers.each().for_each(|follower| follower.reset());
+        self.leaders.each().for_each(|leader| leader.reset());
         self.sent.clear();
-        self.slip = Slip::default();
         self.parcel = Parcel { modes: self.computed, ..Parcel::BLANK };
         self.report = Report { modes: self.computed, ..Report::BLANK };
     }

@@ -2,11 +2,10 @@
 //! in the window.
 
 use super::{
-    MAX_DEGREE,
+    LiteralModel, MAX_DEGREE,
     factor::column_start,
     features::{MOTION_COLUMNS, Scales},
     gram::{GRAM_ROW, Gram},
-    messages::LiteralModel,
     recipe::Recipe,
 };
 use crate::signal::{LANES, Lanes};

@@ -3,15 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE, Mode, SLOTS,
-    anchored::within,
-    baselines::BaselineModel,
-    features::{Features, MOTION_COLUMNS},
-    matched::{MatchedModel, Slip},
-    regressors::{Stance, motion_changes},
+    MAX_DEGREE, Mode, Models, SLOTS,
+    features::{Features, MOTION_COLUMNS, Scales},
+    regressors::Stance,
     settings::ModeSet,
 };
-use crate::signal::{LANES, Lanes};
+use crate::signal::{LANES, Lanes, Motion};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -24,96 +21,24 @@ pub struct Sample {
     pub force_n: Vector3<f64>,
 }
 
-/// Parameters of the paper's model `f = M X`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LiteralModel {
-    /// Degree `N`; 0 if none could be solved.
-    pub degree: u8,
-    /// Constant force (N); zero unless the recipe has one.
-    pub constant_n: Lanes,
-    /// `M`: the first `3 N` entries are in use, N per SI unit of the feature.
-    pub coefficients: [Lanes; MOTION_COLUMNS],
-}
-
-impl LiteralModel {
-    pub const NONE: Self = Self { degree: 0, constant_n: Lanes::ZERO, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
-
-    /// Returns `M X` (N), `X` in SI units as the recipe defines it.
-    #[inline]
-    pub(super) fn product(&self, x: &Features) -> Lanes {
-        let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
-        terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
-    }
-
-    /// Returns `M X` (N); `None` without a model or if the product is not finite.
-    pub(super) fn force(&self, x: &Features) -> Option<Lanes> {
-        let force = self.product(x);
-        (self.degree > 0 && force.is_finite()).then_some(force)
-    }
-}
-
-/// Parameters of anchored rendering: `f^(t) = f(t - D) + clip(...)`, all experts combined into one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnchoredModel {
-    /// N per change of position (m), of its differences from four low-passes (m), of friction (1), and of square, cube
-    /// and product of the position about the centre (m², m³, m²).
-    pub motion: [Lanes; 9],
-    /// The follower's own contribution: the change expected without any motion (N).
-    pub constant_n: Lanes,
-    /// Slow mean of the follower's position (m).
-    pub centre_m: Lanes,
-    /// Motion at which friction saturates (m).
-    pub knee: Lanes,
-    /// Minimum rendered force (N): the range of past forces is not exceeded.
-    pub low_n: Lanes,
-    /// Maximum rendered force (N).
-    pub high_n: Lanes,
-    /// Maximum correction (N, norm over the axes).
-    pub bound_n: f64,
-    /// Highest power of the position in the model with the largest weight, 1 or 3; 0 without a correction.
-    pub degree: u8,
-    /// Fraction of a full correction, 0 (plain reflection) to 1, on the axis with the largest correction.
-    pub gain: f64,
-}
-
-impl AnchoredModel {
-    pub const NONE: Self = Self {
-        motion: [Lanes::ZERO; 9],
-        constant_n: Lanes::ZERO,
-        centre_m: Lanes::ZERO,
-        knee: Lanes::ZERO,
-        low_n: Lanes::ZERO,
-        high_n: Lanes::ZERO,
-        bound_n: 0.0,
-        degree: 0,
-        gain: 0.0,
-    };
-
-    /// Returns the force (N) for the current motion, from the force and the motion at the anchor. The force is returned
-    /// unchanged if it is not corrected or the correction is not finite.
-    pub(super) fn force(&self, measured: Lanes, now: &Posture, then: &Posture) -> Lanes {
-        if self.gain <= 0.0 {
-            return measured;
-        }
-        let changes = motion_changes(&now.stance, &then.stance, self.centre_m, self.knee);
-        let correction = self.motion.iter().zip(changes).fold(self.constant_n, |sum, (k, change)| sum + *k * change);
-        if correction.is_finite() {
-            within(measured + clip(correction, self.bound_n), self.low_n, self.high_n)
-        } else {
-            measured
-        }
-    }
-}
-
-/// One end's motion at one tick, in the form that the models use.
+/// One end's motion at one tick, as the models see it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Posture {
+pub struct Posture {
     pub(super) features: Features,
     pub(super) stance: Stance,
 }
 
 impl Posture {
     pub(super) const BLANK: Self = Self { features: [Lanes::ZERO; MOTION_COLUMNS], stance: Stance::BLANK };
+
+    /// Position (m), velocity (m/s) and acceleration (m/s^2).
+    pub fn motion(&self, scales: &Scales) -> Motion {
+        Motion {
+            x: self.stance.x,
+            v: self.features[1] * scales.velocity_m_s,
+            a: self.features[2] * scales.acceleration_m_s2,
+        }
+    }
 }
 
 /// Returns the force shortened to `bound_n`; zero if it is not finite.
@@ -141,13 +66,8 @@ pub struct Parcel {
     pub resting: bool,
     /// The computed modes; no force is rendered in the others.
     pub modes: ModeSet,
-    pub literal: LiteralModel,
-    pub linear: LiteralModel,
-    pub anchored: AnchoredModel,
-    pub matched: MatchedModel,
-    /// Matched rendering's parameters in the paper's columns.
-    pub nima: MatchedModel,
-    pub baseline: BaselineModel,
+    /// The parameters of each of them.
+    pub models: Models,
 }
 
 impl Parcel {
@@ -156,51 +76,9 @@ impl Parcel {
         force_n: Vector3::new(0.0, 0.0, 0.0),
         fresh: false,
         modes: ModeSet::only(Mode::Dfr),
-        literal: LiteralModel::NONE,
-        linear: LiteralModel::NONE,
-        anchored: AnchoredModel::NONE,
-        matched: MatchedModel::NONE,
-        nima: MatchedModel::NONE,
+        models: Models::NONE,
         resting: false,
-        baseline: BaselineModel::Nothing,
     };
-
-    /// Returns the force of every mode for the current motion, by [`Mode::index`](super::Mode::index): `anchored` from
-    /// the motion now and at the time of the packet, `literal` from `x`, the paper's current `X`, `matched` with this
-    /// end's `slip`. `anchored_weight`: weight of anchored rendering in the best of both, 0 to 1. `baseline`: that
-    /// mode's force, whose state is at the leader. A non-finite force gives no result, because limits would turn it
-    /// into one of their bounds.
-    pub(super) fn render(
-        &self,
-        now: &Posture,
-        then: &Posture,
-        x: &Features,
-        slip: &mut Slip,
-        anchored_weight: Lanes,
-        baseline: impl FnOnce(&BaselineModel, Lanes) -> Option<Lanes>,
-    ) -> [Option<Lanes>; SLOTS] {
-        let measured = Lanes::from(self.force_n);
-        if !measured.is_finite() {
-            return [None; SLOTS];
-        }
-        let anchored = self.anchored.force(measured, now, then);
-        let matched = self.matched.force(now, slip);
-        let best = matched.map_or(anchored, |matched| matched + (anchored - matched) * anchored_weight);
-        let mut forces = [
-            self.literal.force(x),
-            self.linear.force(x),
-            Some(measured),
-            Some(anchored),
-            matched,
-            self.nima.force(now, &mut Slip::default()),
-            Some(best),
-            self.modes.baseline().and_then(|_| baseline(&self.baseline, measured)),
-        ];
-        for mode in Mode::ALL.into_iter().filter(|mode| !self.modes.contains(*mode)) {
-            forces[mode.index()] = None;
-        }
-        forces
-    }
 }
 
 /// Forces rendered at the leader, not yet limited (the gates of `safety` follow).
@@ -284,13 +162,18 @@ impl Report {
 
     /// Returns the degree that `mode` uses; 0: none.
     pub fn degree_of(&self, mode: Mode) -> u8 {
-        match mode {
-            Mode::Literal => self.paper_degree,
-            Mode::Linear => u8::from(self.paper_degree > 0),
-            Mode::Dfr | Mode::Baseline(_) => 0,
-            Mode::Anchored => self.degree,
-            Mode::Matched | Mode::Best => self.matched_degree,
-            Mode::Nima => self.nima_degree,
+        mode.entry().map_or(0, |entry| (entry.degree)(self))
+    }
+
+    /// Takes over what a parcel tells of the identification, where the parcel is all that there is of it.
+    pub fn note(&mut self, parcel: &Parcel) {
+        self.t_s = parcel.t_s;
+        self.modes = parcel.modes;
+        self.resting = parcel.resting;
+        for mode in Mode::ALL {
+            if let Some(entry) = mode.entry() {
+                (entry.note)(&parcel.models, self);
+            }
         }
     }
 

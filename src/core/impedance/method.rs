@@ -1,37 +1,117 @@
-//! The follower's part of each rendering method, as one list.
+//! What a way to render consists of: a part at either end of the link, and parameters that cross it.
+//!
+//! The list of all ways is in `mode`; this file has the trait that each of them implements, and runs them.
+
+use std::fmt::Debug;
+
+use dyn_clone::{DynClone, clone_trait_object};
 
 use super::{
-    Mode,
-    anchored::Anchored,
-    baselines::Ends,
+    Mode, SLOTS,
     degrees::Degrees,
     features::Features,
-    matched::{Form, Matched},
+    literal::LiteralSolver,
     messages::{Parcel, Posture, Report},
-    paper::Paper,
+    mode::Models,
+    packed::Parameters,
     settings::{ModeSet, Settings},
+    solution::Solution,
 };
 use crate::signal::Lanes;
 
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seen<'a> {
-    pub(super) posture: &'a Posture,
-    /// The paper's `X`.
-    pub(super) x: &'a Features,
-    /// The force, or the last good force, N.
-    pub(super) force_n: Lanes,
-    /// The sample was measured, not bridged.
-    pub(super) good: bool,
-    /// The features come from a full filter, too.
-    pub(super) usable: bool,
-    pub(super) learn: bool,
-    /// The packet that the leader has now; without a delay the last one.
-    pub(super) sent: Option<&'a Parcel>,
+/// A way to render. Its error at the horizon is that of its leader's part, which the identifier also runs on the follower's own motion.
+pub trait Method {
+    /// The name on the command line, in files and on the screen.
+    const NAME: &'static str;
+    /// Short description for tables.
+    const ABOUT: &'static str;
+    /// Whether it is fitted to a window of samples, whose length is then a setting of it.
+    const HAS_WINDOW: bool = false;
+    /// Whether it chooses among polynomial degrees, the highest of which is then a setting of it.
+    const HAS_DEGREES: bool = false;
+    /// Whether its force is damped where the leader's own motion is that of the handle.
+    const IS_DAMPED: bool = false;
+    /// The modes whose forces it uses. They are computed with it, and come before it in the list.
+    const PARTS: &'static [Mode] = &[];
+    /// Its parameters in a parcel, if it sends any.
+    const PARAMETERS: Option<Place> = None;
+
+    /// The follower's part; `None` if the measured force and the parameters of other modes are enough.
+    fn follower(_settings: &Settings, _delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        None
+    }
+
+    /// The leader's part.
+    fn leader(settings: &Settings) -> Box<dyn Leader>;
+
+    /// The degree that it uses; 0: none.
+    fn degree(_report: &Report) -> u8 {
+        0
+    }
+
+    /// Enters into a report what a parcel tells of the follower's part.
+    fn note(_models: &Models, _report: &mut Report) {}
 }
 
-/// The follower's part of a rendering method: learns from samples and writes its parameters into the packet.
-pub(super) trait Method {
-    /// Returns whether the method runs while these modes are computed.
+/// Where the parameters of a method are in a parcel.
+pub type Place = fn(&mut Models) -> &mut dyn Parameters;
+
+/// A method as a row of the list.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    pub(super) name: &'static str,
+    pub(super) about: &'static str,
+    pub(super) has_window: bool,
+    pub(super) has_degrees: bool,
+    pub(super) is_damped: bool,
+    pub(super) parts: &'static [Mode],
+    pub(super) parameters: Option<Place>,
+    pub(super) follower: fn(&Settings, usize) -> Option<Box<dyn Follower>>,
+    pub(super) leader: fn(&Settings) -> Box<dyn Leader>,
+    pub(super) degree: fn(&Report) -> u8,
+    pub(super) note: fn(&Models, &mut Report),
+}
+
+impl Entry {
+    /// The row of a method.
+    pub const fn of<M: Method>() -> Self {
+        Self {
+            name: M::NAME,
+            about: M::ABOUT,
+            has_window: M::HAS_WINDOW,
+            has_degrees: M::HAS_DEGREES,
+            is_damped: M::IS_DAMPED,
+            parts: M::PARTS,
+            parameters: M::PARAMETERS,
+            follower: M::follower,
+            leader: M::leader,
+            degree: M::degree,
+            note: M::note,
+        }
+    }
+}
+
+/// What the follower's part of a method sees of a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    pub posture: &'a Posture,
+    /// The paper's `X`.
+    pub x: &'a Features,
+    /// The force, or the last good one, N.
+    pub force_n: Lanes,
+    /// The sample was measured, not bridged.
+    pub good: bool,
+    /// Its features are those of a full filter, too.
+    pub usable: bool,
+    /// There is something to learn from.
+    pub learn: bool,
+    /// The parcel that the leader has now; without a delay the last one stands for it.
+    pub sent: Option<&'a Parcel>,
+}
+
+/// The follower's part of a method: learns from samples and writes its parameters into the parcel.
+pub trait Follower: Debug + DynClone + Send + Sync {
+    /// Whether it is at work while these modes are computed.
     fn serves(&self, modes: ModeSet) -> bool;
 
     /// Returns whether the method restarts when the modes change from `before` to `now`.
@@ -44,54 +124,114 @@ pub(super) trait Method {
     fn set_delay(&mut self, _delay_ticks: usize) {}
 
     fn reset(&mut self);
-}
 
-/// The methods for which memory is allocated.
-#[derive(Clone, Debug)]
-pub(super) struct Methods {
-    pub(super) literal: Option<Box<Paper>>,
-    /// The paper's linear model, if it is computed without the others.
-    pub(super) linear: Option<Box<Paper>>,
-    anchored: Option<Box<Anchored>>,
-    /// The degrees of the window's impedance, where anchored is compared with the paper.
-    pub(super) degrees: Option<Box<Degrees>>,
-    matched: Option<Box<Matched>>,
-    nima: Option<Box<Matched>>,
-    pub(super) baseline: Option<Box<Ends>>,
-}
-
-impl Methods {
-    pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
-        let modes = settings.modes;
-        let paper = |mode: Mode| modes.contains(mode).then(|| Box::new(Paper::new(mode, settings)));
-        let matched =
-            |mode: Mode, form: Form| modes.contains(mode).then(|| Box::new(Matched::new(form, settings, delay_ticks)));
-        Self {
-            literal: paper(Mode::Literal),
-            linear: paper(Mode::Linear),
-            anchored: modes.contains(Mode::Anchored).then(|| Box::new(Anchored::new(settings, delay_ticks))),
-            degrees: Degrees::are_wanted(modes).then(|| Box::new(Degrees::new(settings, delay_ticks))),
-            matched: matched(Mode::Matched, Form::of(settings)),
-            nima: matched(Mode::Nima, Form::Paper(settings.max_degree as u8)),
-            baseline: modes.baseline().map(|baseline| Box::new(Ends::new(baseline, settings, delay_ticks))),
-        }
+    /// The paper's solutions of every degree, if it solves them.
+    fn paper(&self) -> Option<&LiteralSolver> {
+        None
     }
 
-    /// Returns the methods in their order of execution.
-    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut dyn Method> {
-        fn entry<M: Method>(method: &mut Option<Box<M>>) -> Option<&mut dyn Method> {
-            method.as_deref_mut().map(|method| method as &mut dyn Method)
+    /// The nested solutions on the newest window, if it solves them.
+    fn nested(&self) -> Option<&Solution> {
+        None
+    }
+}
+
+clone_trait_object!(Follower);
+
+/// The follower's parts that there is memory for.
+#[derive(Clone, Debug)]
+pub(super) struct Followers(Vec<Box<dyn Follower>>);
+
+impl Followers {
+    pub(super) fn new(settings: &Settings, delay_ticks: usize) -> Self {
+        let modes = settings.modes;
+        let parts = modes.modes().filter_map(|mode| (mode.entry()?.follower)(settings, delay_ticks));
+        let degrees = Degrees::are_wanted(modes).then(|| Degrees::new(settings, delay_ticks));
+        Self(parts.chain(degrees.map(|degrees| Box::new(degrees) as Box<dyn Follower>)).collect())
+    }
+
+    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut Box<dyn Follower>> {
+        self.0.iter_mut()
+    }
+
+    /// The first thing of this kind that one of them has.
+    pub(super) fn find<'a, T>(&'a self, of: impl Fn(&'a dyn Follower) -> Option<T>) -> Option<T> {
+        self.0.iter().find_map(|follower| of(&**follower))
+    }
+}
+
+/// What the leader's part of a method sees in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    pub parcel: &'a Parcel,
+    /// The force in the parcel, N; it is finite.
+    pub measured_n: Lanes,
+    /// The leader's own motion now, and at the time of the parcel.
+    pub now: &'a Posture,
+    pub then: &'a Posture,
+    /// The paper's `X` of the leader's own motion.
+    pub x: &'a Features,
+    /// Age of the parcel.
+    pub age_ticks: usize,
+    /// The forces of the modes that come before in the list, N, by [`Mode::index`].
+    pub forces_n: &'a [Option<Lanes>; SLOTS],
+}
+
+/// The leader's part of a method: makes a force of the newest parcel and the leader's own motion.
+pub trait Leader: Debug + DynClone + Send + Sync {
+    /// The force (N) of this tick; `None` without parameters or where it is not finite.
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes>;
+
+    /// Takes the forces of all modes in this tick, N. `pace`: how fast time runs by the motion.
+    fn keep(&mut self, _forces_n: &[Option<Lanes>; SLOTS], _pace: f64) {}
+
+    /// Takes a parcel that has just come, to judge what was kept `age_ticks` ago.
+    fn judge(&mut self, _parcel: &Parcel, _age_ticks: usize) {}
+
+    /// The modes `now` take the place of those `before`.
+    fn compute(&mut self, _before: ModeSet, _now: ModeSet) {}
+
+    /// Forgets everything.
+    fn reset(&mut self) {}
+}
+
+clone_trait_object!(Leader);
+
+/// The leader's parts of all modes, by [`Mode::index`]; of the baselines that of the one in the settings.
+#[derive(Clone, Debug)]
+pub(super) struct Leaders(Vec<Box<dyn Leader>>);
+
+impl Leaders {
+    pub(super) fn new(settings: &Settings) -> Self {
+        let modes = Mode::ALL.into_iter().chain(settings.modes.baseline().map(Mode::Baseline));
+        Self(modes.filter_map(|mode| Some((mode.entry()?.leader)(settings))).collect())
+    }
+
+    /// The force of every mode (N), by [`Mode::index`]. Nothing is made of a force that is not finite: limits would turn it into one of
+    /// their edges.
+    pub(super) fn render(
+        &mut self,
+        parcel: &Parcel,
+        [now, then]: [&Posture; 2],
+        x: &Features,
+        age_ticks: usize,
+    ) -> [Option<Lanes>; SLOTS] {
+        let mut forces_n = [None; SLOTS];
+        let measured_n = Lanes::from(parcel.force_n);
+        if !measured_n.is_finite() {
+            return forces_n;
         }
-        let Self { literal, linear, anchored, degrees, matched, nima, baseline } = self;
-        let all = [
-            entry(literal),
-            entry(linear),
-            entry(anchored),
-            entry(degrees),
-            entry(matched),
-            entry(nima),
-            entry(baseline),
-        ];
-        all.into_iter().flatten()
+        for (slot, leader) in self.0.iter_mut().enumerate() {
+            let moment = Moment { parcel, measured_n, now, then, x, age_ticks, forces_n: &forces_n };
+            forces_n[slot] = leader.render(&moment);
+        }
+        for mode in Mode::ALL.into_iter().filter(|mode| !parcel.modes.contains(*mode)) {
+            forces_n[mode.index()] = None;
+        }
+        forces_n
+    }
+
+    pub(super) fn each(&mut self) -> impl Iterator<Item = &mut Box<dyn Leader>> {
+        self.0.iter_mut()
     }
 }

@@ -8,27 +8,27 @@
 //! is counted, left out of the window, and bridged by a prediction of the motion; it never reaches a parameter. Dead
 //! band, gain, ceiling and age of the rendered force are not handled here; the gates of `safety` handle them.
 //!
-//!  file | content |
-//! ---|---|
-//!  `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
-//!  `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
-//!  `paper`, `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
-//!  `recipe` | interpretation of the paper where it leaves a choice; the choice of the degree by the data after the window |
-//!  `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
-//!  `anchored`, `regressors`, `regression`, `mixture` | anchored rendering: experts and their weights |
-//!  `best` | a softmin over anchored and matched rendering, evaluated by the leader |
-//!  `matched` | matched rendering: the force from the hand's own motion, by parameters alone |
-//!  `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
-//!  `baselines` | published methods for comparison; at most one is computed |
-//!  `pace`, `envelope` | a clock that motion drives; the range of past forces |
-//!  `method` | the follower's part of each rendering method, as one list |
-//!  `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and the data between them |
+//! | file | holds |
+//! |---|---|
+//! | `track`, `features` | the motion of one end; its features `u, u', u'', ..., u^N, u'^N, u''^N` and their scales |
+//! | `window`, `factor`, `solution` | sliding window at a constant cost; triangular factor; all its nested solutions |
+//! | `gram`, `literal` | the paper's normal equations, all degrees, in-window choice |
+//! | `recipe` | how the paper is read where it leaves a choice; the choice by what comes after the window |
+//! | `degrees`, `horizon` | the nested solution that predicts force best at the true delay, where modes are compared |
+//! | `mode`, `method` | the list of the ways to render; what each of them consists of |
+//! | `paper`, `dfr`, `anchored`, `matched`, `best` | the program's own ways to render |
+//! | `baseline` | the names of the methods of others, to compare with; at most one is computed |
+//! | `regressors`, `regression`, `mixture` | experts of anchored rendering and their trust |
+//! | `damper` | the damping that keeps a force of the handle's own motion from driving the hand |
+//! | `pace`, `envelope` | a clock that motion drives; the range of forces seen |
+//! | `identifier`, `information`, `renderer`, `messages` | the two ends of the link, and what goes between them |
 
 mod anchored;
-mod baselines;
+mod baseline;
 mod best;
 mod damper;
 mod degrees;
+mod dfr;
 mod envelope;
 mod factor;
 mod features;
@@ -64,16 +64,20 @@ mod rest_tests;
 #[cfg(test)]
 mod tests;
 
-pub use baselines::{BaselineModel, Contact, Wave};
+pub use anchored::AnchoredModel;
+pub use baseline::{Baseline, BaselineModel, Contact, Wave};
+pub use envelope::Envelope;
 pub use factor::Factor;
 pub use features::{Features, MOTION_COLUMNS, Scales};
 pub use gram::Gram;
 pub use identifier::Identifier;
 pub use literal::LiteralSolver;
 pub use matched::{Form, MatchedModel};
-pub use messages::{AnchoredModel, Excitation, LiteralModel, Parcel, Rendered, Report, Sample};
-pub use mode::{Baseline, MODES, Mode, ParseModeError, SLOTS};
+pub use messages::{Excitation, Parcel, Posture, Rendered, Report, Sample};
+pub use method::{Entry, Follower, Leader, Method, Moment, Place, Seen};
+pub use mode::{MODES, Mode, Models, ParseModeError, SLOTS, add_baselines};
 pub use packed::{PACKED_MAX, Packed};
+pub use paper::LiteralModel;
 pub use recipe::{Choice, Reading, Recipe};
 pub use renderer::Renderer;
 pub use settings::{MAX_DELAY_S, ModeSet, OwnMotion, Settings, SettingsError};

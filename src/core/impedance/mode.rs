@@ -1,81 +1,126 @@
-//! The methods that turn measured force into rendered force.
+//! The ways of turning measured force into rendered force, as one list.
 
-use std::{fmt, str::FromStr};
+use std::{fmt, str::FromStr, sync::OnceLock};
 
 use serde::{Deserialize, Serialize};
 
-/// A published method for comparison; see the folder `impedance/baselines`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Baseline {
-    /// Model-mediated teleoperation: a Hunt-Crossley contact by recursive least squares.
-    ModelMediated,
-    /// Wave variables, return channel.
-    Waves,
-    /// Time-domain passivity with the energy that the tissue returned, return channel.
-    Passivity,
-    /// Extrapolation by a Kalman filter of force and its rate.
-    Kalman,
-    /// Extrapolation by an autoregressive model of the force, by recursive least squares.
-    Autoregressive,
+use super::{
+    anchored::{Anchored, AnchoredModel},
+    baseline::{Baseline, BaselineModel},
+    best::Best,
+    dfr::Dfr,
+    matched::{Matched, MatchedModel, Nima},
+    method::{Entry, Place},
+    paper::{Linear, Literal, LiteralModel},
+};
+
+/// Declares the modes from one list, each with the [`Method`](super::Method) that it stands for.
+macro_rules! modes {
+    ($(#[$attribute:meta])* enum Mode { $($(#[$doc:meta])* $mode:ident: $method:ty,)* }) => {
+        $(#[$attribute])*
+        pub enum Mode {
+            $($(#[$doc])* $mode,)*
+            /// A method of others, to compare with.
+            Baseline(Baseline),
+        }
+
+        /// Number of the program's own modes.
+        pub const MODES: usize = [$(stringify!($mode)),*].len();
+
+        impl Mode {
+            /// The program's own modes, in the order of [`Mode::index`].
+            pub const ALL: [Self; MODES] = [$(Self::$mode),*];
+
+            const ENTRIES: &'static [Entry; MODES] = &[$(Entry::of::<$method>()),*];
+
+            /// Its entry in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], and the last one for whichever baseline is computed.
+            pub const fn index(self) -> usize {
+                enum Place { $($mode,)* Baseline }
+                let place = match self {
+                    $(Self::$mode => Place::$mode,)*
+                    Self::Baseline(_) => Place::Baseline,
+                };
+                place as usize
+            }
+        }
+    };
 }
 
-impl Baseline {
-    pub const ALL: [Self; 5] = [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive];
-
-    /// Returns the name used on the command line, in files and on the screen.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ModelMediated => "model_mediated",
-            Self::Waves => "waves",
-            Self::Passivity => "passivity",
-            Self::Kalman => "kalman",
-            Self::Autoregressive => "autoregressive",
-        }
+modes! {
+    /// How the force for the hand is made from the follower's measurements.
+    ///
+    /// ```
+    /// use nima_core::impedance::{Baseline, Mode};
+    ///
+    /// for mode in Mode::ALL.into_iter().chain(Mode::BASELINES) {
+    ///     assert_eq!(mode.name().parse(), Ok(mode));
+    /// }
+    /// assert_eq!("kalman".parse(), Ok(Mode::Baseline(Baseline::Kalman)));
+    /// assert!("sideways".parse::<Mode>().is_err());
+    /// ```
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    #[serde(into = "&'static str", try_from = "String")]
+    enum Mode {
+        /// The paper to the letter: `f = M X`, degree chosen by the error inside the window (NIMA).
+        Literal: Literal,
+        /// The paper's linear predecessor: the same with degree 1 only (IMA).
+        Linear: Linear,
+        /// Direct force reflection: the measured force, as late as the link delivers it.
+        Dfr: Dfr,
+        /// Anchored rendering: the last measured force, corrected by the identified impedance over the link's delay.
+        Anchored: Anchored,
+        /// Matched rendering: parameters cross the link, the force is made of the hand's own motion (NIMA as it was meant).
+        Matched: Matched,
+        /// The paper's columns under the rules of matched rendering.
+        Nima: Nima,
+        /// Anchored and matched rendering, weighted by their errors of late.
+        Best: Best,
     }
 }
 
-/// Method that computes the force for the hand from the follower's measurements.
-///
-/// ```
-/// use nima_core::impedance::{Baseline, Mode};
-///
-/// for mode in Mode::ALL.into_iter().chain(Mode::BASELINES) {
-///     assert_eq!(mode.name().parse(), Ok(mode));
-/// }
-/// assert_eq!("kalman".parse(), Ok(Mode::Baseline(Baseline::Kalman)));
-/// assert!("sideways".parse::<Mode>().is_err());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(into = "&'static str", try_from = "String")]
-pub enum Mode {
-    /// The paper to the letter: `f = M X`, degree chosen by the error inside the window (NIMA).
-    Literal,
-    /// The paper's linear predecessor: the same with degree 1 only (IMA).
-    Linear,
-    /// Direct force reflection: the measured force, as late as the link delivers it.
-    Dfr,
-    /// Anchored rendering: the last measured force, corrected by the identified impedance over the link's delay.
-    Anchored,
-    /// Matched rendering: parameters cross the link, and the force is computed from the hand's own motion (NIMA as
-    /// intended).
-    Matched,
-    /// The paper's columns under the rules of matched rendering.
-    Nima,
-    /// Anchored and matched rendering, weighted by their recent errors.
-    Best,
-    Baseline(Baseline),
+/// The parameters that the modes send.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Models {
+    /// The paper's choice.
+    pub literal: LiteralModel,
+    /// The paper's linear model.
+    pub linear: LiteralModel,
+    /// Anchored rendering's choice.
+    pub anchored: AnchoredModel,
+    /// Matched rendering's parameters.
+    pub matched: MatchedModel,
+    /// The same in the paper's columns.
+    pub nima: MatchedModel,
+    /// What the baseline needs, where one is computed.
+    pub baseline: BaselineModel,
 }
 
-/// Number of the program's own modes.
-pub const MODES: usize = 7;
-/// Number of entries in a table of modes: the program's own, and the one baseline that may be computed with them.
+impl Models {
+    /// Nothing is known.
+    pub const NONE: Self = Self {
+        literal: LiteralModel::NONE,
+        linear: LiteralModel::NONE,
+        anchored: AnchoredModel::NONE,
+        matched: MatchedModel::NONE,
+        nima: MatchedModel::NONE,
+        baseline: BaselineModel::Nothing,
+    };
+}
+
+/// Entries of a table of modes: the program's own, and the one baseline that may be computed beside them.
 pub const SLOTS: usize = MODES + 1;
 
+/// Builds the methods of others, where the program has them.
+static OTHERS: OnceLock<fn(Baseline) -> Entry> = OnceLock::new();
+
+/// Adds the methods of others to this process. Without them a mode of theirs is a [`SettingsError::Baseline`](super::SettingsError).
+pub fn add_baselines(entry: fn(Baseline) -> Entry) {
+    // A second time changes nothing.
+    OTHERS.set(entry).ok();
+}
+
 impl Mode {
-    /// The program's own modes, in the order of [`Mode::index`].
-    pub const ALL: [Self; MODES] =
-        [Self::Literal, Self::Linear, Self::Dfr, Self::Anchored, Self::Matched, Self::Nima, Self::Best];
+    /// Every baseline as a mode.
     pub const BASELINES: [Self; Baseline::ALL.len()] = {
         let mut modes = [Self::Dfr; Baseline::ALL.len()];
         let mut i = 0;
@@ -86,43 +131,67 @@ impl Mode {
         modes
     };
 
-    /// Returns the entry in tables of [`SLOTS`] modes: the position in [`Mode::ALL`], or the last entry for whichever
-    /// baseline is computed.
-    pub const fn index(self) -> usize {
+    /// One of the program's own modes in the list.
+    const fn own(self) -> Option<&'static Entry> {
         match self {
-            Self::Literal => 0,
-            Self::Linear => 1,
-            Self::Dfr => 2,
-            Self::Anchored => 3,
-            Self::Matched => 4,
-            Self::Nima => 5,
-            Self::Best => 6,
-            Self::Baseline(_) => MODES,
+            Self::Baseline(_) => None,
+            own => Some(&Self::ENTRIES[own.index()]),
+        }
+    }
+
+    /// The method that it stands for; `None` for a baseline that this program does not have.
+    pub(super) fn entry(self) -> Option<Entry> {
+        match self {
+            Self::Baseline(baseline) => OTHERS.get().map(|entry| entry(baseline)),
+            own => own.own().copied(),
+        }
+    }
+
+    /// The modes whose forces it uses, which are computed with it.
+    pub(super) const fn parts(self) -> &'static [Self] {
+        match self.own() {
+            Some(entry) => entry.parts,
+            None => &[],
         }
     }
 
     /// Returns whether the mode is fitted to a window of samples, whose length is then one of its settings. The others
     /// forget with their own memories.
     pub const fn has_window(self) -> bool {
-        matches!(self, Self::Literal | Self::Linear | Self::Nima)
+        matches!(self.own(), Some(Entry { has_window: true, .. }))
     }
 
     /// Returns whether the mode chooses among polynomial degrees, the highest of which is then one of its settings.
     pub const fn has_degrees(self) -> bool {
-        matches!(self, Self::Literal | Self::Nima)
+        matches!(self.own(), Some(Entry { has_degrees: true, .. }))
     }
 
     /// Returns the name used on the command line, in files and on the screen.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Literal => "literal",
-            Self::Linear => "linear",
-            Self::Dfr => "dfr",
-            Self::Anchored => "anchored",
-            Self::Matched => "matched",
-            Self::Nima => "nima",
-            Self::Best => "best",
             Self::Baseline(baseline) => baseline.name(),
+            own => Self::ENTRIES[own.index()].name,
+        }
+    }
+
+    /// Where its parameters are in a parcel; `None` if it has none of its own.
+    pub(super) const fn parameters(self) -> Option<Place> {
+        match self.own() {
+            Some(entry) => entry.parameters,
+            None => None,
+        }
+    }
+
+    /// Whether its force is damped where the leader's own motion is that of the handle.
+    pub(super) const fn is_damped(self) -> bool {
+        matches!(self.own(), Some(Entry { is_damped: true, .. }))
+    }
+
+    /// Short description for tables.
+    pub const fn about(self) -> &'static str {
+        match self.own() {
+            Some(entry) => entry.about,
+            None => "a method of others",
         }
     }
 }

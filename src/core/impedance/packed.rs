@@ -3,10 +3,7 @@
 //! The numbers are 32 bits wide: a parameter that is accurate to 1 in 10 million changes no force that a hand can feel,
 //! and half the bytes leave room for the repair of losses. Columns that a model does not use are omitted.
 
-use super::{
-    AnchoredModel, BaselineModel, Contact, Form, LiteralModel, MODES, MatchedModel, Mode, ModeSet, Parcel, Wave,
-    matched::COLUMNS as MATCHED_COLUMNS,
-};
+use super::{MODES, Mode, ModeSet, Parcel, matched::COLUMNS as MATCHED_COLUMNS};
 use crate::signal::Lanes;
 
 /// Maximum number of numbers in one packed model: matched rendering with every column in use.
@@ -22,23 +19,27 @@ pub struct Packed {
     pub numbers: [f32; PACKED_MAX],
 }
 
-/// Conversion of a rendering's parameters to and from numbers.
-trait Numbers: Sized {
+/// The parameters of one rendering, taken apart into numbers and put together again.
+pub trait Numbers: Sized {
+    /// No parameters.
     const NONE: Self;
 
+    /// Appends the parameters to a row.
     fn write(&self, row: &mut Writer<'_>);
 
     /// Returns the parameters, or `None` if the numbers are invalid or not finite.
     fn read(row: &mut Reader<'_>) -> Option<Self>;
 }
 
-/// The parameters of one rendering within a packet.
-trait Parameters {
+/// The parameters of one rendering in their place in a parcel.
+pub trait Parameters {
+    /// Appends them to a row.
     fn write(&self, row: &mut Writer<'_>);
 
     /// Replaces the parameters; returns false, and changes nothing, if the new ones are invalid or not finite.
     fn renew(&mut self, row: &mut Reader<'_>) -> bool;
 
+    /// Nothing is known any more.
     fn forget(&mut self);
 }
 
@@ -60,16 +61,10 @@ impl Parcel {
     /// Returns the parameters of the rendering in this slot; `None` if that rendering has none. Every slot after the
     /// program's own modes is the baseline's.
     fn parameters(&mut self, slot: usize) -> Option<&mut dyn Parameters> {
-        let parameters: &mut dyn Parameters = match Mode::ALL.get(slot) {
-            Some(Mode::Literal) => &mut self.literal,
-            Some(Mode::Linear) => &mut self.linear,
-            Some(Mode::Anchored) => &mut self.anchored,
-            Some(Mode::Matched) => &mut self.matched,
-            Some(Mode::Nima) => &mut self.nima,
-            Some(Mode::Dfr | Mode::Best | Mode::Baseline(_)) => return None,
-            None => &mut self.baseline,
-        };
-        Some(parameters)
+        match Mode::ALL.get(slot) {
+            Some(mode) => mode.parameters().map(|place| place(&mut self.models)),
+            None => Some(&mut self.models.baseline),
+        }
     }
 }
 
@@ -87,7 +82,7 @@ impl Packed {
 
     /// Returns the renderings that have parameters, in the order in which they take turns.
     fn renderings(modes: ModeSet) -> impl Iterator<Item = Mode> {
-        modes.modes().filter(|mode| !matches!(mode, Mode::Dfr | Mode::Best))
+        modes.modes().filter(|mode| matches!(mode, Mode::Baseline(_)) || mode.parameters().is_some())
     }
 
     /// Packs the parameters of the rendering whose turn it is among those in the packet; returns `None` if there are
@@ -116,55 +111,59 @@ impl Packed {
     }
 }
 
-struct Writer<'a> {
+/// A row of numbers that is being written.
+#[derive(Debug)]
+pub struct Writer<'a> {
     packed: &'a mut Packed,
 }
 
 impl Writer<'_> {
-    fn put(&mut self, number: f64) {
+    pub(super) fn put(&mut self, number: f64) {
         if let Some(place) = self.packed.numbers.get_mut(usize::from(self.packed.len)) {
             *place = number as f32;
             self.packed.len += 1;
         }
     }
 
-    fn lanes(&mut self, lanes: Lanes) {
+    pub(super) fn lanes(&mut self, lanes: Lanes) {
         let Lanes([x, y, z, _]) = lanes;
         for number in [x, y, z] {
             self.put(number);
         }
     }
 
-    fn row(&mut self, row: &[Lanes]) {
+    pub(super) fn row(&mut self, row: &[Lanes]) {
         let used = row.iter().rposition(|lanes| *lanes != Lanes::ZERO).map_or(0, |last| last + 1);
         self.put(used as f64);
         row.iter().take(used).for_each(|lanes| self.lanes(*lanes));
     }
 }
 
-struct Reader<'a> {
+/// The rest of a row of numbers.
+#[derive(Debug)]
+pub struct Reader<'a> {
     rest: &'a [f32],
 }
 
 impl Reader<'_> {
-    fn take(&mut self) -> Option<f64> {
+    pub(super) fn take(&mut self) -> Option<f64> {
         let (first, rest) = self.rest.split_first()?;
         self.rest = rest;
         first.is_finite().then(|| f64::from(*first))
     }
 
-    /// Reads a whole number up to `most`.
-    fn count(&mut self, most: usize) -> Option<usize> {
+    /// A whole number up to `most`.
+    pub(super) fn count(&mut self, most: usize) -> Option<usize> {
         let number = self.take()?;
         let count = number as usize;
         ((count as f64 - number).abs() < f64::EPSILON && count <= most).then_some(count)
     }
 
-    fn lanes(&mut self) -> Option<Lanes> {
+    pub(super) fn lanes(&mut self) -> Option<Lanes> {
         Some(Lanes([self.take()?, self.take()?, self.take()?, 0.0]))
     }
 
-    fn row<const N: usize>(&mut self) -> Option<[Lanes; N]> {
+    pub(super) fn row<const N: usize>(&mut self) -> Option<[Lanes; N]> {
         let used = self.count(N)?;
         let mut row = [Lanes::ZERO; N];
         for place in row.iter_mut().take(used) {
@@ -174,159 +173,49 @@ impl Reader<'_> {
     }
 }
 
-impl Numbers for LiteralModel {
-    const NONE: Self = Self::NONE;
-
-    fn write(&self, row: &mut Writer<'_>) {
-        row.put(f64::from(self.degree));
-        row.lanes(self.constant_n);
-        row.row(&self.coefficients);
-    }
-
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
-        Some(Self { degree: row.count(super::MAX_DEGREE)? as u8, constant_n: row.lanes()?, coefficients: row.row()? })
-    }
-}
-
-impl Numbers for AnchoredModel {
-    const NONE: Self = Self::NONE;
-
-    fn write(&self, row: &mut Writer<'_>) {
-        row.put(f64::from(self.degree));
-        row.put(self.gain);
-        row.put(self.bound_n);
-        for lanes in [self.constant_n, self.centre_m, self.knee, self.low_n, self.high_n] {
-            row.lanes(lanes);
-        }
-        row.row(&self.motion);
-    }
-
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
-        let degree = row.count(3)? as u8;
-        let gain = row.take()?;
-        let bound_n = row.take()?;
-        let constant_n = row.lanes()?;
-        let centre_m = row.lanes()?;
-        let knee = row.lanes()?;
-        let low_n = row.lanes()?;
-        let high_n = row.lanes()?;
-        Some(Self { motion: row.row()?, constant_n, centre_m, knee, low_n, high_n, bound_n, degree, gain })
-    }
-}
-
-impl Numbers for MatchedModel {
-    const NONE: Self = Self::NONE;
-
-    fn write(&self, row: &mut Writer<'_>) {
-        let (form, degree) = match self.form {
-            Form::Tissue => (0, 0),
-            Form::Sliding => (1, 0),
-            Form::Coupled => (2, 0),
-            Form::Paper(degree) => (3, degree),
-        };
-        row.put(f64::from(form));
-        row.put(f64::from(degree));
-        row.put(f64::from(self.degree));
-        for lanes in [self.one, self.origin, self.bounds_n[0], self.bounds_n[1], self.offset_n] {
-            row.lanes(lanes);
-        }
-        self.gives.iter().for_each(|give| row.put(*give));
-        row.row(&self.parameters);
-    }
-
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
-        let form = row.count(3)?;
-        let paper = row.count(super::MAX_DEGREE)? as u8;
-        let form = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(paper)][form];
-        let degree = row.count(super::MAX_DEGREE)? as u8;
-        let one = row.lanes()?;
-        let origin = row.lanes()?;
-        let bounds_n = [row.lanes()?, row.lanes()?];
-        let offset_n = row.lanes()?;
-        let gives = [row.take()?, row.take()?];
-        Some(Self { form, degree, one, parameters: row.row()?, origin, gives, bounds_n, offset_n })
-    }
-}
-
-impl Numbers for BaselineModel {
-    const NONE: Self = Self::Nothing;
-
-    fn write(&self, row: &mut Writer<'_>) {
-        match self {
-            Self::Nothing => row.put(0.0),
-            Self::Contact(contact) => {
-                row.put(1.0);
-                for lanes in
-                    [contact.surface_m, contact.reach_m, contact.exponent, contact.bounds_n[0], contact.bounds_n[1]]
-                {
-                    row.lanes(lanes);
-                }
-                row.row(&contact.parameters);
-            }
-            Self::Wave(wave) => {
-                row.put(2.0);
-                row.lanes(wave.returning);
-                row.lanes(wave.impedance_n_s_m);
-            }
-            Self::Returned { energy_j } => {
-                row.put(3.0);
-                row.lanes(*energy_j);
-            }
-            Self::Trend { force_n, rate_n_s } => {
-                row.put(4.0);
-                row.lanes(*force_n);
-                row.lanes(*rate_n_s);
-            }
-            Self::Forecast { force_n } => {
-                row.put(5.0);
-                row.lanes(*force_n);
-            }
-        }
-    }
-
-    fn read(row: &mut Reader<'_>) -> Option<Self> {
-        Some(match row.count(5)? {
-            0 => Self::Nothing,
-            1 => {
-                let surface_m = row.lanes()?;
-                let reach_m = row.lanes()?;
-                let exponent = row.lanes()?;
-                let bounds_n = [row.lanes()?, row.lanes()?];
-                Self::Contact(Contact { surface_m, reach_m, exponent, parameters: row.row()?, bounds_n })
-            }
-            2 => Self::Wave(Wave { returning: row.lanes()?, impedance_n_s_m: row.lanes()? }),
-            3 => Self::Returned { energy_j: row.lanes()? },
-            4 => Self::Trend { force_n: row.lanes()?, rate_n_s: row.lanes()? },
-            _ => Self::Forecast { force_n: row.lanes()? },
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::impedance::{Baseline, Identifier, SLOTS, Sample, Settings};
+    use crate::impedance::{Baseline, BaselineModel, Contact, Identifier, Models, SLOTS, Sample, Settings, Wave};
 
-    /// Packets of two seconds of pressing, with every rendering computed.
-    fn parcels(baseline: Baseline) -> Vec<Parcel> {
-        let modes = ModeSet::ALL.with(Mode::Baseline(baseline));
-        let mut identifier = Identifier::new(&Settings { modes, delay_s: 0.05, ..Settings::default() }).unwrap();
-        (0..2000_u32)
-            .map(|i| {
-                let t_s = f64::from(i) * 1e-3;
-                let depth_m = 0.004 * (6.0 * t_s).sin();
-                let position_m = Vector3::new(0.002 * (9.0 * t_s).cos(), 0.001 * (4.0 * t_s).sin(), -depth_m);
-                let force_n = Vector3::new(0.3 * (9.0 * t_s).cos(), 0.0, 600.0 * depth_m.max(0.0));
-                identifier.step(&Sample { t_s, position_m, force_n });
-                *identifier.parcel()
-            })
-            .collect()
+    /// The last parcel of two seconds of pressing, with every rendering of our own and a model of a method of others.
+    fn parcel(baseline: &BaselineModel) -> Parcel {
+        let mut identifier = Identifier::new(&Settings { delay_s: 0.05, ..Settings::default() }).unwrap();
+        for i in 0..2000_u32 {
+            let t_s = f64::from(i) * 1e-3;
+            let depth_m = 0.004 * (6.0 * t_s).sin();
+            let position_m = Vector3::new(0.002 * (9.0 * t_s).cos(), 0.001 * (4.0 * t_s).sin(), -depth_m);
+            let force_n = Vector3::new(0.3 * (9.0 * t_s).cos(), 0.0, 600.0 * depth_m.max(0.0));
+            identifier.step(&Sample { t_s, position_m, force_n });
+        }
+        let mut parcel = *identifier.parcel();
+        parcel.modes = parcel.modes.with(Mode::Baseline(Baseline::Kalman));
+        parcel.models.baseline = *baseline;
+        parcel
     }
 
-    fn close(one: &Parcel, other: &Parcel) -> bool {
-        // Compares every parameter to 32 bits: comparing the debug texts would hide nothing either, but is slow.
+    const LANES: Lanes = Lanes([0.5, -2.0, 0.25, 0.0]);
+
+    const CONTACT: Contact = Contact {
+        surface_m: LANES,
+        reach_m: LANES,
+        exponent: LANES,
+        parameters: [LANES, Lanes::ZERO, LANES, LANES, LANES, Lanes::ZERO, Lanes::ZERO],
+        bounds_n: [LANES, Lanes::ZERO],
+    };
+
+    const BASELINES: [BaselineModel; 5] = [
+        BaselineModel::Contact(CONTACT),
+        BaselineModel::Wave(Wave { returning: LANES, impedance_n_s_m: LANES }),
+        BaselineModel::Returned { energy_j: LANES },
+        BaselineModel::Trend { force_n: LANES, rate_n_s: Lanes::ZERO },
+        BaselineModel::Forecast { force_n: LANES },
+    ];
+
+    fn close(one: &Models, other: &Models) -> bool {
+        // Every parameter to 32 bits: the debug text of both, number by number, would hide nothing, but it is slow.
         let near = |a: Lanes, b: Lanes| (a - b).norm() <= 1e-6 * (a.norm() + 1e-9);
         let rows = |a: &[Lanes], b: &[Lanes]| a.iter().zip(b).all(|(a, b)| near(*a, *b));
         rows(&one.matched.parameters, &other.matched.parameters)
@@ -339,21 +228,20 @@ mod tests {
             && [one.literal.degree, one.anchored.degree, one.matched.degree, one.nima.degree]
                 == [other.literal.degree, other.anchored.degree, other.matched.degree, other.nima.degree]
             && (one.matched.form, one.nima.form) == (other.matched.form, other.nima.form)
-            && std::mem::discriminant(&one.baseline) == std::mem::discriminant(&other.baseline)
+            && one.baseline == other.baseline
     }
 
     #[test]
     fn every_model_arrives_as_it_was_packed() {
-        for baseline in Baseline::ALL {
-            let parcel = *parcels(baseline).last().unwrap();
+        for baseline in &BASELINES {
+            let parcel = parcel(baseline);
             let mut arrived = Parcel { modes: parcel.modes, ..Parcel::BLANK };
-            assert!(!close(&parcel, &arrived));
+            assert!(!close(&parcel.models, &arrived.models));
             let turns = Packed::turns(parcel.modes);
-            assert_eq!(turns, 6);
             for turn in 0..turns {
                 assert!(Packed::of(&parcel, turn).unwrap().put_into(&mut arrived), "turn {turn}");
             }
-            assert!(close(&parcel, &arrived), "{baseline:?}");
+            assert!(close(&parcel.models, &arrived.models), "{baseline:?}");
             (0..SLOTS as u8).for_each(|slot| Packed::forget(slot, &mut arrived));
             assert_eq!(arrived, Parcel { modes: parcel.modes, ..Parcel::BLANK });
         }
@@ -368,8 +256,8 @@ mod tests {
 
     #[test]
     fn what_makes_no_sense_changes_nothing() {
-        let parcel = *parcels(Baseline::ModelMediated).last().unwrap();
-        for turn in 0..6 {
+        let parcel = parcel(&BASELINES[0]);
+        for turn in 0..Packed::turns(parcel.modes) {
             let good = Packed::of(&parcel, turn).unwrap();
             for at in 0..usize::from(good.len) {
                 for bad in [f32::NAN, f32::INFINITY] {

@@ -3,15 +3,126 @@
 use nalgebra::Vector3;
 
 use super::{
-    MAX_DEGREE, Mode,
+    MAX_DEGREE, Mode, Models,
+    features::{Features, MOTION_COLUMNS},
     gram::Gram,
     literal::LiteralSolver,
     messages::{Parcel, Report, active},
-    method::{Method, Seen},
+    method::{Follower, Leader, Method, Moment, Place, Seen},
+    packed::{Numbers, Reader, Writer},
     recipe::{Choice, Next},
     settings::{ModeSet, Settings},
     window::{SlidingWindow, Summary as _},
 };
+use crate::signal::Lanes;
+
+/// The paper to the letter.
+#[derive(Clone, Debug)]
+pub(super) struct Literal;
+
+impl Method for Literal {
+    const NAME: &'static str = "literal";
+    const ABOUT: &'static str = ABOUT;
+    const HAS_WINDOW: bool = true;
+    const HAS_DEGREES: bool = true;
+    const PARAMETERS: Option<Place> = Some(|models| &mut models.literal);
+
+    fn follower(settings: &Settings, _delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        Some(Box::new(Paper::new(Mode::Literal, settings)))
+    }
+
+    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+        Box::new(Self)
+    }
+
+    fn degree(report: &Report) -> u8 {
+        report.paper_degree
+    }
+
+    fn note(models: &Models, report: &mut Report) {
+        report.paper_degree = models.literal.degree;
+    }
+}
+
+impl Leader for Literal {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        moment.parcel.models.literal.force(moment.x)
+    }
+}
+
+/// The paper's linear model.
+#[derive(Clone, Debug)]
+pub(super) struct Linear;
+
+impl Method for Linear {
+    const NAME: &'static str = "linear";
+    const ABOUT: &'static str = ABOUT;
+    const HAS_WINDOW: bool = true;
+    const PARAMETERS: Option<Place> = Some(|models| &mut models.linear);
+
+    fn follower(settings: &Settings, _delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        Some(Box::new(Paper::new(Mode::Linear, settings)))
+    }
+
+    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+        Box::new(Self)
+    }
+
+    fn degree(report: &Report) -> u8 {
+        u8::from(report.paper_degree > 0)
+    }
+}
+
+impl Leader for Linear {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        moment.parcel.models.linear.force(moment.x)
+    }
+}
+
+const ABOUT: &str = "at the horizon; the paper tests within the window only";
+
+/// Parameters of the paper's model `f = M X`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiteralModel {
+    /// Degree `N`; 0: none could be solved.
+    pub degree: u8,
+    /// Constant force (N); zero unless the recipe has one.
+    pub constant_n: Lanes,
+    /// `M`: the first `3 N` are in use, N per SI unit of the feature.
+    pub coefficients: [Lanes; MOTION_COLUMNS],
+}
+
+impl LiteralModel {
+    /// No model.
+    pub const NONE: Self = Self { degree: 0, constant_n: Lanes::ZERO, coefficients: [Lanes::ZERO; MOTION_COLUMNS] };
+
+    /// `M X` (N), `X` in SI units as the recipe reads it.
+    #[inline]
+    pub(super) fn product(&self, x: &Features) -> Lanes {
+        let terms = self.coefficients.iter().zip(x).take(3 * usize::from(self.degree));
+        terms.fold(self.constant_n, |sum, (m, x)| sum + *m * *x)
+    }
+
+    /// The same; `None` without a model or where the product is not finite.
+    pub(super) fn force(&self, x: &Features) -> Option<Lanes> {
+        let force = self.product(x);
+        (self.degree > 0 && force.is_finite()).then_some(force)
+    }
+}
+
+impl Numbers for LiteralModel {
+    const NONE: Self = Self::NONE;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        row.put(f64::from(self.degree));
+        row.lanes(self.constant_n);
+        row.row(&self.coefficients);
+    }
+
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        Some(Self { degree: row.count(MAX_DEGREE)? as u8, constant_n: row.lanes()?, coefficients: row.row()? })
+    }
+}
 
 #[derive(Clone, Debug)]
 pub(super) struct Paper {
@@ -36,13 +147,9 @@ impl Paper {
             next: (recipe.choice == Choice::Next).then(|| Next::new(settings.rate_hz)),
         }
     }
-
-    pub(super) const fn solver(&self) -> &LiteralSolver {
-        &self.solver
-    }
 }
 
-impl Method for Paper {
+impl Follower for Paper {
     fn serves(&self, modes: ModeSet) -> bool {
         modes.contains(self.mode) && (self.mode == Mode::Literal || !modes.contains(Mode::Literal))
     }
@@ -69,8 +176,8 @@ impl Method for Paper {
             Some(next) => next.step(seen.usable.then_some((seen.x, seen.force_n)), solver),
             None => solver.choice(),
         };
-        parcel.linear = *solver.model(1);
-        parcel.literal = *solver.model(choice);
+        parcel.models.linear = *solver.model(1);
+        parcel.models.literal = *solver.model(choice);
         report.paper_degree = choice as u8;
         report.literal_failures = solver.failures();
         for degree in 1..=MAX_DEGREE {
@@ -82,5 +189,9 @@ impl Method for Paper {
         self.window.reset();
         self.solver.reset();
         self.next.iter_mut().for_each(Next::reset);
+    }
+
+    fn paper(&self) -> Option<&LiteralSolver> {
+        Some(&self.solver)
     }
 }

@@ -3,10 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    MAX_DEGREE,
+    LiteralModel, MAX_DEGREE,
     features::{Features, MOTION_COLUMNS, Scales},
     literal::LiteralSolver,
-    messages::LiteralModel,
 };
 use crate::signal::Lanes;
 

@@ -47,7 +47,7 @@ fn the_default_is_what_it_was_before_there_was_a_choice_to_the_bit() {
         identifier.step(&pressed(k, &mut state));
         let parcel = identifier.parcel();
         let report = identifier.report();
-        for model in [&parcel.literal, &parcel.linear] {
+        for model in [&parcel.models.literal, &parcel.models.linear] {
             model.coefficients.iter().flat_map(|m| m.0).for_each(&mut mix);
         }
         for mode in [Mode::Literal, Mode::Linear] {
@@ -176,7 +176,7 @@ fn whatever_comes_in_no_recipe_sends_a_number_that_is_not_finite_and_all_are_for
             used.step(&s);
             let parcel = used.parcel();
             let report = used.report();
-            for model in [&parcel.literal, &parcel.linear] {
+            for model in [&parcel.models.literal, &parcel.models.linear] {
                 assert!(model.coefficients.iter().chain([&model.constant_n]).all(|m| m.is_finite()), "{recipe:?}");
             }
             let all_n = report.prediction_n.iter().chain(&report.reconstruction_n);

@@ -4,15 +4,13 @@ use nalgebra::Vector3;
 
 use super::{
     Mode, SLOTS,
-    baselines::Leader,
-    best::Best,
     damper::Damper,
-    matched::Slip,
     messages::{Parcel, Posture, Rendered, active},
+    method::Leaders,
     settings::{MAX_DELAY_S, OwnMotion, Settings, SettingsError},
     track::{Track, usable_position},
 };
-use crate::signal::{DelayLine, Lanes};
+use crate::signal::DelayLine;
 
 /// Renders a force from the received packets and the leader's motion. Nothing is allocated after construction.
 ///
@@ -34,11 +32,9 @@ pub struct Renderer {
     delay_ticks: usize,
     track: Track,
     postures: DelayLine<Posture>,
-    slip: Slip,
-    baseline: Option<Leader>,
-    best: Option<Best>,
-    /// Damping for forces that are rendered from the handle's own motion, which must not drive the hand.
-    dampers: Option<[(Mode, Damper); 2]>,
+    leaders: Leaders,
+    /// What is rendered from the handle's own motion must not drive the hand.
+    dampers: Vec<(Mode, Damper)>,
     parcel_t_s: f64,
     waiting: usize,
 }
@@ -51,15 +47,14 @@ impl Renderer {
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         let max_delay = (MAX_DELAY_S * settings.rate_hz).ceil() as usize;
+        let is_handle = settings.own_motion == OwnMotion::Handle;
+        let damped = Mode::ALL.into_iter().filter(|mode| is_handle && mode.is_damped());
         Ok(Self {
             delay_ticks: settings.delay_ticks(settings.delay_s),
             track: Track::new(settings),
             postures: DelayLine::new(2 * max_delay, Posture::BLANK),
-            slip: Slip::default(),
-            baseline: settings.modes.baseline().map(|_| Leader::new(settings)),
-            best: settings.modes.contains(Mode::Best).then(|| Best::new(settings)),
-            dampers: (settings.own_motion == OwnMotion::Handle)
-                .then(|| [Mode::Matched, Mode::Nima].map(|mode| (mode, Damper::new(settings.rate_hz)))),
+            leaders: Leaders::new(settings),
+            dampers: damped.map(|mode| (mode, Damper::new(settings.rate_hz))).collect(),
             parcel_t_s: f64::NEG_INFINITY,
             waiting: 0,
             settings: settings.clone(),
@@ -80,9 +75,7 @@ impl Renderer {
 
         let Some(parcel) = parcel.filter(|parcel| parcel.t_s.is_finite()) else {
             self.waiting = self.waiting.saturating_add(1);
-            if let Some(best) = &mut self.best {
-                best.say(&[None; SLOTS], 0.0);
-            }
+            self.leaders.each().for_each(|leader| leader.keep(&[None; SLOTS], 0.0));
             return Rendered::default();
         };
         if parcel.t_s > self.parcel_t_s {
@@ -94,18 +87,14 @@ impl Renderer {
         // Without that much motion yet, the anchor is now, i.e. there is no correction.
         let age = self.delay_ticks.saturating_add(self.waiting);
         let then = self.postures.get(age).unwrap_or(&now);
-        let baseline = self.baseline.as_mut();
-        let weight = self.best.as_ref().map_or(Lanes::ZERO, Best::anchored);
-        let mut forces = parcel.render(&now, then, &x, &mut self.slip, weight, |model, force_n| {
-            baseline.and_then(|leader| leader.step(model, force_n, &now, age))
-        });
-        if let Some(best) = &mut self.best {
-            best.say(&forces, now.stance.pace);
+        let mut forces = self.leaders.render(parcel, [&now, then], &x, age);
+        for leader in self.leaders.each() {
+            leader.keep(&forces, now.stance.pace);
             if self.waiting == 0 {
-                best.hear(parcel, age);
+                leader.judge(parcel, age);
             }
         }
-        for (mode, damper) in self.dampers.iter_mut().flatten() {
+        for (mode, damper) in &mut self.dampers {
             let force_n = &mut forces[mode.index()];
             *force_n = force_n.map(|force_n| damper.step(&now.stance, force_n));
         }
@@ -123,14 +112,8 @@ impl Renderer {
     pub fn reset(&mut self) {
         self.track.reset();
         self.postures.clear();
-        self.slip = Slip::default();
-        if let Some(baseline) = &mut self.baseline {
-            baseline.reset();
-        }
-        if let Some(best) = &mut self.best {
-            best.reset();
-        }
-        self.dampers.iter_mut().flatten().for_each(|(_, damper)| damper.reset());
+        self.leaders.each().for_each(|leader| leader.reset());
+        self.dampers.iter_mut().for_each(|(_, damper)| damper.reset());
         self.parcel_t_s = f64::NEG_INFINITY;
         self.waiting = 0;
     }

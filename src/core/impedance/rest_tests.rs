@@ -89,13 +89,13 @@ fn a_mode_that_nobody_chose_is_not_computed() {
         identifier.step(&sample(k, 1000.0));
         alone.step(&sample(k, 1000.0));
     }
-    assert_eq!(identifier.parcel().matched, alone.parcel().matched);
+    assert_eq!(identifier.parcel().models.matched, alone.parcel().models.matched);
     assert!(identifier.report().degree > 0 && identifier.report().paper_degree > 0);
     assert!(identifier.report().rank > 0, "the window's degrees are available for comparison");
     assert!(identifier.report().prediction(Mode::Linear).is_none());
 
     identifier.compute(ModeSet::only(Mode::Linear));
-    assert_eq!(identifier.parcel().literal, LiteralModel::NONE);
+    assert_eq!(identifier.parcel().models.literal, LiteralModel::NONE);
     for k in 1500..2000 {
         identifier.step(&sample(k, 1000.0));
     }
@@ -104,7 +104,7 @@ fn a_mode_that_nobody_chose_is_not_computed() {
     for k in 0..2000 {
         linear.step(&sample(k, 1000.0));
     }
-    assert_eq!(identifier.parcel().linear, linear.parcel().linear, "the window slid over it");
+    assert_eq!(identifier.parcel().models.linear, linear.parcel().models.linear, "the window slid over it");
 }
 
 #[test]

@@ -42,9 +42,11 @@ impl ModeSet {
             return self;
         }
         self.own[mode.index()] = true;
-        if matches!(mode, Mode::Best) {
-            self.own[Mode::Anchored.index()] = true;
-            self.own[Mode::Matched.index()] = true;
+        let parts = mode.parts();
+        let mut i = 0;
+        while i < parts.len() {
+            self.own[parts[i].index()] = true;
+            i += 1;
         }
         self
     }
@@ -196,6 +198,11 @@ impl Settings {
                 return Err(E::Ridge { ridge });
             }
         }
+        if let Some(baseline) = self.modes.baseline()
+            && Mode::Baseline(baseline).entry().is_none()
+        {
+            return Err(E::Baseline { name: baseline.name() });
+        }
         Ok(())
     }
 
@@ -237,4 +244,7 @@ pub enum SettingsError {
     Rest { rest_n: f64 },
     #[error("the ridge {ridge} is out of range: use {RIDGE}")]
     Ridge { ridge: f64 },
+    /// The methods of others are not in this program; see [`add_baselines`](super::add_baselines).
+    #[error("the mode {name} is not in this program; build it with the feature lab, or choose another mode")]
+    Baseline { name: &'static str },
 }

@@ -37,12 +37,12 @@ fn assert_finite(report: &Report, parcel: &Parcel) {
     ]);
     assert!(vectors.flat_map(|v| v.iter()).all(|v| v.is_finite()), "{report:?}");
     assert!(condition.is_finite() && horizon_error_n.iter().all(|e| e.is_finite()), "{report:?}");
-    for model in [&parcel.literal, &parcel.linear] {
+    for model in [&parcel.models.literal, &parcel.models.linear] {
         assert!(model.coefficients.iter().all(|m| m.is_finite()), "{parcel:?}");
     }
-    let anchored = &parcel.anchored;
+    let anchored = &parcel.models.anchored;
     assert!(anchored.motion.iter().chain([&anchored.constant_n]).all(|m| m.is_finite()), "{parcel:?}");
-    for model in [&parcel.matched, &parcel.nima] {
+    for model in [&parcel.models.matched, &parcel.models.nima] {
         assert!(model.parameters.iter().chain([&model.offset_n]).all(|m| m.is_finite()), "{parcel:?}");
     }
 }

@@ -3,12 +3,25 @@
 //! The same gates, with the required number of axes, serve a force in space, a torque and a gripper force: one chain
 //! each.
 
+mod age;
+mod ceiling;
+mod dead_band;
+mod energy;
+mod gain;
+mod slew;
+mod validity;
+
 use nalgebra::SVector;
 
-use super::{
-    Age, Ceiling, ChainSettings, DeadBand, Energy, EnergyMode, Gain, Gate, GateCounts, GateReport, Governor, Reading,
-    Reason, Slew, admitted,
-};
+pub use age::Age;
+pub use ceiling::Ceiling;
+pub use dead_band::DeadBand;
+pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MOST_J};
+pub use gain::Gain;
+pub use slew::Slew;
+pub use validity::{PLAUSIBLE_N, admitted};
+
+use super::{ChainSettings, EnergyMode, Gate, GateCounts, GateReport, Governor, Reading, Reason};
 use crate::limits::DEAD_BAND_M_S;
 
 /// A force that is to reach the hand. [`Request::default`] is not permitted.

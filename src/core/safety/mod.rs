@@ -5,26 +5,17 @@
 //! gate; [`Chain`] defines their order. Bad input (NaN, infinite, too old) gives zero, never a panic. Uses no devices,
 //! files or threads.
 
-mod age;
-mod ceiling;
 mod chain;
-mod dead_band;
-mod energy;
-mod gain;
 mod governor;
 mod interlock;
 mod plausibility;
 mod report;
 mod settings;
-mod slew;
-mod validity;
 
-pub use age::Age;
-pub use ceiling::Ceiling;
-pub use chain::{Chain, GripperChain, Request, TorqueChain};
-pub use dead_band::DeadBand;
-pub use energy::{ALLOWANCE_J, Energy, LEAK_S, MOST_J};
-pub use gain::Gain;
+pub use chain::{
+    ALLOWANCE_J, Age, Ceiling, Chain, DeadBand, Energy, Gain, GripperChain, LEAK_S, MOST_J, PLAUSIBLE_N, Request, Slew,
+    TorqueChain, admitted,
+};
 pub use governor::{Governed, Governor, Handle, Reading};
 pub use interlock::{Change, Interlock, Permits, READY_WITHIN_S, Refused, Seen, State, Why, Wish};
 pub use plausibility::{
@@ -33,5 +24,3 @@ pub use plausibility::{
 };
 pub use report::{GATES, Gate, GateCounts, GateReport, Reason};
 pub use settings::{ChainSettings, EnergyMode};
-pub use slew::Slew;
-pub use validity::{PLAUSIBLE_N, admitted};

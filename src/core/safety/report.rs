@@ -1,40 +1,51 @@
 //! Report of the gates: which acted in a tick, why, and how often so far.
 
-/// The gates, in the order of the chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Gate {
-    Permission,
-    /// Whether a force exists, finite and plausible.
-    Validity,
-    /// Age of the data behind the force.
-    Age,
-    DeadBand,
-    Gain,
-    Slew,
-    /// Energy that the hand gets back, compared with the energy that it put in.
-    Energy,
-    Ceiling,
-    /// Whether a hand carries the force.
-    Governor,
+/// Declares an enum together with the list of its values.
+macro_rules! listed {
+    ($(#[$attribute:meta])* enum $name:ident { $($(#[$doc:meta])* $value:ident,)* }) => {
+        $(#[$attribute])*
+        pub enum $name {
+            $($(#[$doc])* $value,)*
+        }
+
+        impl $name {
+            /// All of them, in this order.
+            pub const ALL: [Self; [$(stringify!($value)),*].len()] = [$(Self::$value),*];
+        }
+    };
 }
 
-pub const GATES: usize = 9;
+listed! {
+    /// The gates, in the order of the chain.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+    #[serde(rename_all = "snake_case")]
+    enum Gate {
+        /// Whether the state machine allows force at all.
+        Permission,
+        /// Whether there is a force, finite and plausible.
+        Validity,
+        /// How old the data behind it are.
+        Age,
+        /// Whether the hand moves.
+        DeadBand,
+        /// The operator's factor.
+        Gain,
+        /// How fast the force changes.
+        Slew,
+        /// How much more energy the hand gets back than it gave.
+        Energy,
+        /// How large the force is.
+        Ceiling,
+        /// Whether somebody carries the force.
+        Governor,
+    }
+}
+
+/// Number of gates.
+pub const GATES: usize = Gate::ALL.len();
 
 impl Gate {
-    pub const ALL: [Self; GATES] = [
-        Self::Permission,
-        Self::Validity,
-        Self::Age,
-        Self::DeadBand,
-        Self::Gain,
-        Self::Slew,
-        Self::Energy,
-        Self::Ceiling,
-        Self::Governor,
-    ];
-
-    /// Returns the position in [`Gate::ALL`], for tables with one entry per gate.
+    /// Position in [`Gate::ALL`], for tables with one entry per gate.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -55,40 +66,49 @@ impl Gate {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Reason {
-    /// The force passed.
-    #[default]
-    Open,
-    NotPermitted,
-    /// The mode has no valid force to render.
-    NothingAsked,
-    NotFinite,
-    Implausible,
-    /// The data are older than the link's delay: the force fades.
-    Ageing,
-    /// The data are too old, or of unknown age.
-    TooOld,
-    HandSlow,
-    SpeedUnknown,
-    GainZero,
-    /// The gain is still ramping to the value that was set.
-    GainRamping,
-    /// The force would change too fast.
-    ChangeTooFast,
-    /// The hand would get back more energy than it gave.
-    EnergySpent,
-    /// The force is above the ceiling.
-    AboveCeiling,
-    /// The force is above what the device can give.
-    AboveDeviceLimit,
-    /// The handle moves along the force in a way that a hand hardly does: the force fades, or recovers from fading.
-    RunsAway,
-    /// The handle is at rest after a release, and no sign of a hand has followed.
-    HandGone,
-    /// The handle has certainly been released: only the brake's force passes.
-    LetGo,
+listed! {
+    /// Why a gate took force away.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "snake_case")]
+    enum Reason {
+        /// It did not: the force passed.
+        #[default]
+        Open,
+        /// The loop is not engaged.
+        NotPermitted,
+        /// The mode has nothing valid to render.
+        NothingAsked,
+        /// The request is no finite number.
+        NotFinite,
+        /// The request is larger than any contact.
+        Implausible,
+        /// The data are older than the link explains: the force fades.
+        Ageing,
+        /// The data are too old, or of unknown age.
+        TooOld,
+        /// The hand is slower than the dead band.
+        HandSlow,
+        /// The speed of the hand is not known.
+        SpeedUnknown,
+        /// The operator set the gain to zero.
+        GainZero,
+        /// The gain is on its way to the value that was chosen.
+        GainRamping,
+        /// The force would change too fast.
+        ChangeTooFast,
+        /// The hand would get back more energy than it gave.
+        EnergySpent,
+        /// The force is above the ceiling.
+        AboveCeiling,
+        /// The force is above what the device can give.
+        AboveDeviceLimit,
+        /// The handle moves along the force as a hand hardly moves it: the force fades, or returns after that.
+        RunsAway,
+        /// The handle rests after a release, and there has been no sign of a hand since.
+        HandGone,
+        /// The hand has let go beyond doubt: no force but the brake's.
+        LetGo,
+    }
 }
 
 /// Number of times that each gate acted since the chain was created, and its last reason.

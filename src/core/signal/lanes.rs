@@ -57,6 +57,14 @@ impl Lanes {
         Self([f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)])
     }
 
+    /// Each lane kept between two bounds.
+    #[must_use]
+    #[inline(always)]
+    pub fn within(self, low: Self, high: Self) -> Self {
+        self.zip(low, f64::max).zip(high, f64::min)
+    }
+
+    /// Square roots.
     #[must_use]
     #[inline(always)]
     pub fn sqrt(self) -> Self {

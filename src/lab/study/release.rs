@@ -183,6 +183,7 @@ pub struct Way {
 
 /// Every mode, the program's own first.
 fn methods() -> impl Iterator<Item = Mode> {
+    nima_baselines::provide();
     Mode::ALL.into_iter().chain(Mode::BASELINES)
 }
 

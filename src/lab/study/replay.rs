@@ -143,6 +143,7 @@ pub fn replay_motion(
 ) -> Result<Figures, ReplayError> {
     let Motion { rate_hz, samples, sample, .. } = *motion;
     let (settings, delay) = settings(motion, options)?;
+    nima_baselines::provide();
     let mut identifier = Identifier::new(&settings)?;
     let leader = |at_m| Ok::<_, SettingsError>((Leader::new(&settings, delay)?, at_m));
     let mut leader = motion.leader_m.map(leader).transpose()?;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{SensorSettings, Settings, Side};
+use super::{FollowerSettings, LeaderSettings, SensorSettings, Settings, Side};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
@@ -131,9 +131,9 @@ impl Part {
     /// Returns the makes that the program supports.
     pub const fn makes(self) -> &'static [&'static str] {
         match self.kind() {
-            PartKind::Handle => &["Force Dimension", "Haply", "external"],
-            PartKind::Arm => &["Kinova", "simulated", "external"],
-            PartKind::Sensor => &["Bota", "external"],
+            PartKind::Handle => LeaderSettings::MAKERS,
+            PartKind::Arm => FollowerSettings::MAKERS,
+            PartKind::Sensor => SensorSettings::MAKERS,
             PartKind::Servos => &["DYNAMIXEL"],
             PartKind::Tracker => &["NDI"],
             PartKind::Pedal => &[],

@@ -84,17 +84,9 @@ impl FarLink {
     }
 
     fn note(&mut self, identified: &Identified) {
-        let Self { parcel, report, .. } = self;
-        report.t_s = parcel.t_s;
-        report.modes = parcel.modes;
-        report.resting = parcel.resting;
-        report.paper_degree = parcel.literal.degree;
-        report.degree = parcel.anchored.degree;
-        report.matched_degree = parcel.matched.degree;
-        report.nima_degree = parcel.nima.degree;
-        report.gain = parcel.anchored.gain;
+        self.report.note(&self.parcel);
         if let Some(errors_n) = identified.errors_n {
-            report.horizon_error_n = errors_n.map(f64::from);
+            self.report.horizon_error_n = errors_n.map(f64::from);
         }
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, UnitVector3, Vector3};
 use nima_core::{
     calibration::frames::Move,
-    impedance::{Baseline, Mode},
+    impedance::{Baseline, MODES, Mode},
 };
 use nima_devices::{Loss, Standing};
 use nima_machine::{
@@ -66,16 +66,29 @@ choice!(Act { 0 => Begin {}, 1 => Mark {}, 2 => End {} });
 choice!(Side { 0 => Right {}, 1 => Left {} });
 choice!(Watchdog { 0 => Loop {}, 1 => Source {}, 2 => Link {} });
 
-choice!(Mode {
-    0 => Literal {},
-    1 => Linear {},
-    2 => Dfr {},
-    3 => Anchored {},
-    4 => Matched {},
-    5 => Nima {},
-    6 => Best {},
-    7 => Baseline { 0: baseline: Baseline },
-});
+/// By its place in the list, so that another list is another version of the journal.
+impl Put for Mode {
+    const COLUMNS: usize = 1 + <Baseline as Put>::COLUMNS;
+
+    fn put(&self, to: &mut impl Sink) {
+        self.index().put(to);
+        match self {
+            Self::Baseline(baseline) => baseline.put(to),
+            _ => to.skip(<Baseline as Put>::COLUMNS),
+        }
+    }
+}
+
+impl Take for Mode {
+    fn take(from: &mut impl Source) -> Result<Self, Wrong> {
+        let place = usize::take(from)?;
+        if place == MODES {
+            return Baseline::take(from).map(Self::Baseline);
+        }
+        from.skip(<Baseline as Put>::COLUMNS);
+        Self::ALL.get(place).copied().ok_or(Wrong::NoSuchValue)
+    }
+}
 
 choice!(Baseline {
     0 => ModelMediated {},

@@ -9,6 +9,10 @@ mod parts;
 #[cfg(test)]
 mod tests;
 
+use nima_core::{
+    impedance::SLOTS,
+    safety::{GATES, Reason},
+};
 use nima_machine::teleop::Calibrations;
 
 pub use block::{BLOCK_TICKS, Block, BlockWriter, Noted, Row};
@@ -23,6 +27,12 @@ use parts::Bytes;
 /// checks, another governor and unknown forces, so the replay of an older session would give other forces than the hand
 /// felt.
 pub const VERSION: u16 = 5;
+
+// Ticks have columns for each mode and gate, and numbers for their reasons.
+const _: () = assert!(
+    SLOTS == 8 && GATES == 9 && Reason::ALL.len() == 18,
+    "a mode, a gate or a reason was added: raise VERSION, and correct these numbers"
+);
 
 const MAGIC: [u8; 4] = *b"NIMJ";
 /// Magic, version, CRC.

@@ -257,6 +257,8 @@ pub fn card() -> egui::Frame {
 mod tests {
     use std::path::Path;
 
+    use nima_testing::contrast::LEAST;
+
     use super::*;
 
     /// Every non-ASCII character in the console's source, which contains all its texts: none of them may be drawn as an empty
@@ -288,25 +290,12 @@ mod tests {
         }
     }
 
-    /// Relative luminance as defined by WCAG 2.
-    fn luminance(colour: Color32) -> f64 {
-        let linear = |byte: u8| {
-            let x = f64::from(byte) / 255.0;
-            if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-        };
-        0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
-    }
-
     fn contrast(a: Color32, b: Color32) -> f64 {
-        let a = luminance(a);
-        let b = luminance(b);
-        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+        let [a, b] = [a, b].map(|colour| [colour.r(), colour.g(), colour.b()]);
+        nima_testing::contrast::contrast(a, b)
     }
 
-    /// Minimum contrast of text (WCAG 2, level AA).
-    const LEAST: f64 = 4.5;
-
-    /// The colours of text and numbers in a palette.
+    /// The colours of a palette in which words and numbers are written.
     fn inks(palette: &Palette) -> Vec<(&'static str, Color32)> {
         let mut inks = vec![
             ("text", palette.text),

@@ -1,62 +1,10 @@
-//! Texts: source of the tip force, and the reason why a gate reduced it.
+//! Texts: the source of the force at the tip.
 
-use nima_core::{
-    safety::Reason,
-    tip_force::{Fallback, Unsure},
-};
+use nima_core::tip_force::{Fallback, Unsure};
 use nima_machine::messages::ForceSource;
 
 use super::Words;
 use crate::language::word;
-
-impl Words for Reason {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Open => word("open", "offen"),
-            Self::NotPermitted => word("the loop is not engaged", "die Regelung ist nicht gekoppelt"),
-            Self::RunsAway => word(
-                "the handle moves as if no hand held it, so the force fades",
-                "das Handgerät bewegt sich, als hielte es niemand, die Kraft wird ausgeblendet",
-            ),
-            Self::LetGo => word(
-                "the hand has released the handle: no force, the handle is braked",
-                "die Hand hat losgelassen: keine Kraft, das Handgerät wird gebremst",
-            ),
-            Self::HandGone => word("the hand has released the handle", "die Hand hat das Handgerät losgelassen"),
-            Self::NothingAsked => word("the mode has no valid result", "der Modus hat kein gültiges Ergebnis"),
-            Self::NotFinite => word("the mode's result is not a number", "das Ergebnis des Modus ist keine Zahl"),
-            Self::Implausible => word(
-                "the mode requests more force than any contact can produce",
-                "der Modus verlangt mehr Kraft, als ein Kontakt geben kann",
-            ),
-            Self::Ageing => word(
-                "the data are late, so the force fades",
-                "die Daten sind verspätet, die Kraft wird \
-             ausgeblendet",
-            ),
-            Self::TooOld => word("the data are too old", "die Daten sind zu alt"),
-            Self::HandSlow => word("the hand is slower than the dead band", "die Hand ist langsamer als das Totband"),
-            Self::SpeedUnknown => word(
-                "the speed of the hand is unknown",
-                "die Geschwindigkeit der Hand ist \
-             unbekannt",
-            ),
-            Self::GainZero => word("the gain is zero", "die Verstärkung ist null"),
-            Self::GainRamping => {
-                word("the gain is still changing to the chosen value", "die Verstärkung läuft noch zum gewählten Wert")
-            }
-            Self::ChangeTooFast => word("the force would change too fast", "die Kraft würde sich zu schnell ändern"),
-            Self::EnergySpent => word(
-                "the hand would get back more energy than it put in",
-                "die Hand bekäme mehr Energie zurück, als sie gab",
-            ),
-            Self::AboveCeiling => word("the force is above the ceiling", "die Kraft liegt über der Höchstkraft"),
-            Self::AboveDeviceLimit => {
-                word("the force is above the device's limit", "die Kraft liegt über der Grenze des Geräts")
-            }
-        }
-    }
-}
 
 impl Words for ForceSource {
     fn words(self) -> &'static str {

@@ -1,7 +1,8 @@
-//! Texts: the gates between a model and the hand.
+//! Texts: the gates between a model and the hand, and why they reduce a force.
 
-use nima_core::safety::Gate;
+use nima_core::safety::{Gate, Reason};
 
+use super::Words;
 use crate::language::word;
 
 pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
@@ -78,6 +79,57 @@ pub(crate) fn gate_words(gate: Gate) -> [&'static str; 2] {
                  zurück, wenn eine Hand zufasst; sonst geht die Regelung in den Leerlauf.",
             ),
         ],
+    }
+}
+
+impl Words for Reason {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Open => word("open", "offen"),
+            Self::NotPermitted => word("the loop is not engaged", "die Regelung ist nicht gekoppelt"),
+            Self::RunsAway => word(
+                "the handle moves as if nobody held it, so the force fades",
+                "das Handgerät bewegt sich, als hielte es niemand, die Kraft wird ausgeblendet",
+            ),
+            Self::LetGo => word(
+                "the hand has let go: no force, the handle is braked",
+                "die Hand hat losgelassen: keine Kraft, das Handgerät wird gebremst",
+            ),
+            Self::HandGone => word("the hand has let go of the handle", "die Hand hat das Handgerät losgelassen"),
+            Self::NothingAsked => word("the mode has no valid result", "der Modus hat kein gültiges Ergebnis"),
+            Self::NotFinite => word("the mode's result is not a number", "das Ergebnis des Modus ist keine Zahl"),
+            Self::Implausible => word(
+                "the mode asks for more force than any contact can give",
+                "der Modus verlangt mehr Kraft, als ein Kontakt geben kann",
+            ),
+            Self::Ageing => word(
+                "the data are late, so the force fades",
+                "die Daten sind verspätet, die Kraft wird \
+             ausgeblendet",
+            ),
+            Self::TooOld => word("the data are too old", "die Daten sind zu alt"),
+            Self::HandSlow => word("the hand is slower than the dead band", "die Hand ist langsamer als das Totband"),
+            Self::SpeedUnknown => word(
+                "the speed of the hand is not known",
+                "die Geschwindigkeit der Hand ist \
+             unbekannt",
+            ),
+            Self::GainZero => word("the gain is zero", "die Verstärkung ist null"),
+            Self::GainRamping => {
+                word("the gain is still changing to the chosen value", "die Verstärkung läuft noch zum gewählten Wert")
+            }
+            Self::ChangeTooFast => word("the force would change too fast", "die Kraft würde sich zu schnell ändern"),
+            Self::EnergySpent => word(
+                "the hand would get back more energy than it put in",
+                "die Hand bekäme mehr Energie zurück, als sie gab",
+            ),
+            Self::AboveCeiling => word("the force is above the ceiling", "die Kraft liegt über der Höchstkraft"),
+            Self::AboveDeviceLimit => word(
+                "the force is above what the device can give",
+                "die Kraft liegt über dem, was das Gerät geben \
+                 kann",
+            ),
+        }
     }
 }
 

@@ -33,7 +33,7 @@ pub(crate) use findings::finding_words;
 pub(crate) use frames::{axes_words, cause, phase};
 pub(crate) use gates::gate_words;
 pub(crate) use happenings::happening;
-pub(crate) use modes::{mode_meaning, mode_name};
+pub(crate) use modes::{COMPARED, OFFERED, mode_meaning, mode_name};
 pub(crate) use names::{
     device_name, exchange_words, goal_words, lack_words, loss_words, obstacle_words, part_name, role_name,
     scheduling_words, side_word, state_name, within,

@@ -1,8 +1,16 @@
 //! Texts: the rendering modes.
 
-use nima_core::impedance::{Baseline, Mode};
+use nima_core::impedance::{Baseline, MODES, Mode};
 
 use crate::language::word;
+
+/// The program's own modes as they are offered.
+pub(crate) const OFFERED: [Mode; MODES] =
+    [Mode::Anchored, Mode::Dfr, Mode::Matched, Mode::Best, Mode::Nima, Mode::Literal, Mode::Linear];
+
+/// The same as they are compared.
+pub(crate) const COMPARED: [Mode; MODES] =
+    [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
 
 /// Name of a mode on a button.
 pub(crate) fn mode_name(mode: Mode) -> &'static str {

@@ -3,6 +3,7 @@
 use egui::{Color32, Key, Modifiers, Pos2, Rect, Shape, accesskit::Role as Kind};
 use egui_kittest::kittest::Queryable as _;
 use nima_console::console::{Options, desk::Layout, theme, wizards::Which};
+use nima_testing::contrast::LEAST;
 
 use crate::{
     bench::{self, Console, console_of, toured, until},
@@ -11,21 +12,10 @@ use crate::{
 };
 
 const SIZE: [f32; 2] = [1600.0, 1000.0];
-/// WCAG 2, level AA.
-const LEAST: f64 = 4.5;
-
-fn luminance(colour: Color32) -> f64 {
-    let linear = |byte: u8| {
-        let x = f64::from(byte) / 255.0;
-        if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-    };
-    0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
-}
 
 fn contrast(a: Color32, b: Color32) -> f64 {
-    let a = luminance(a);
-    let b = luminance(b);
-    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    let [a, b] = [a, b].map(|colour| [colour.r(), colour.g(), colour.b()]);
+    nima_testing::contrast::contrast(a, b)
 }
 
 /// A text as painted: its characters, its middle, and its colours over the ground.

@@ -1,6 +1,5 @@
 //! The lasting part of the force that the parameters do not explain: a slowly drifting offset, kept small.
 
-use super::super::anchored::within;
 use crate::signal::{DelayLine, Lanes};
 
 /// Memory of the learned fraction and of the mean and maximum force (s). Chosen as in `matched/mod.rs`.
@@ -51,7 +50,7 @@ impl Drift {
         self.products = (self.products * fade + weighted * then_n).settled();
         self.right = (self.right * fade + weighted * unexplained_n).settled();
         let share = self.right * (self.products * (1.0 + RIDGE)).recip_or_zero();
-        self.share = within(share, Lanes::ZERO, Lanes::splat(1.0));
+        self.share = share.within(Lanes::ZERO, Lanes::splat(1.0));
     }
 
     /// Takes this tick's residual and force (N); returns the offset to send (N).
@@ -63,7 +62,7 @@ impl Drift {
         self.mean_n = (self.mean_n + (size_n - self.mean_n) * self.seen.min(memory).recip()).settled();
         self.largest_n = (self.largest_n * (1.0 - memory.recip())).settled().zip(size_n, f64::max);
         let bound_n = self.largest_n * BOUND;
-        within(self.share * residual_n, -bound_n, bound_n)
+        (self.share * residual_n).within(-bound_n, bound_n)
     }
 
     /// Advances a tick without a measurement.

@@ -26,20 +26,19 @@ mod tests;
 pub(super) use form::COLUMNS;
 pub use form::Form;
 pub use model::MatchedModel;
-pub(super) use slip::Slip;
 
 use self::{
     drift::Drift,
     form::{Row, product},
-    slip::{Held, SLIPS, Stretch, Usual},
+    slip::{Held, SLIPS, Slip, Stretch, Usual},
     sums::Sums,
 };
 use super::{
-    Mode,
+    Mode, Models,
     best::eighth_power,
     envelope::Envelope,
     messages::{Parcel, Posture, Report},
-    method::{Method, Seen},
+    method::{Follower, Leader, Method, Moment, Place, Seen},
     pace::newest_share,
     settings::{MAX_DELAY_S, ModeSet, Settings},
 };
@@ -62,8 +61,83 @@ const LONG_RENEWALS: usize = 2;
 const ERROR_S: f64 = 1.0;
 const EQUAL_N: f64 = 1e-12;
 
-#[derive(Clone, Debug)]
+/// Matched rendering. At the leader: the springs of its slip columns.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Matched {
+    slip: Slip,
+}
+
+impl Method for Matched {
+    const NAME: &'static str = "matched";
+    const ABOUT: &'static str = "parameters alone, the force from the hand's own motion";
+    const IS_DAMPED: bool = true;
+    const PARAMETERS: Option<Place> = Some(|models| &mut models.matched);
+
+    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        Some(Box::new(Learner::new(Form::of(settings), settings, delay_ticks)))
+    }
+
+    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+        Box::new(Self::default())
+    }
+
+    fn degree(report: &Report) -> u8 {
+        report.matched_degree
+    }
+
+    fn note(models: &Models, report: &mut Report) {
+        report.matched_degree = models.matched.degree;
+    }
+}
+
+impl Leader for Matched {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        moment.parcel.models.matched.force(moment.now, &mut self.slip)
+    }
+
+    fn reset(&mut self) {
+        self.slip = Slip::default();
+    }
+}
+
+/// Matched rendering in the paper's columns, none of which slips.
+#[derive(Clone, Debug)]
+pub(super) struct Nima;
+
+impl Method for Nima {
+    const NAME: &'static str = "nima";
+    const ABOUT: &'static str = "the paper's columns with a constant, a kept origin and a ridge";
+    const HAS_WINDOW: bool = true;
+    const HAS_DEGREES: bool = true;
+    const IS_DAMPED: bool = true;
+    const PARAMETERS: Option<Place> = Some(|models| &mut models.nima);
+
+    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        Some(Box::new(Learner::new(Form::Paper(settings.max_degree as u8), settings, delay_ticks)))
+    }
+
+    fn leader(_settings: &Settings) -> Box<dyn Leader> {
+        Box::new(Self)
+    }
+
+    fn degree(report: &Report) -> u8 {
+        report.nima_degree
+    }
+
+    fn note(models: &Models, report: &mut Report) {
+        report.nima_degree = models.nima.degree;
+    }
+}
+
+impl Leader for Nima {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        moment.parcel.models.nima.force(moment.now, &mut Slip::default())
+    }
+}
+
+/// The follower's part of both.
+#[derive(Clone, Debug)]
+struct Learner {
     form: Form,
     rate_hz: f64,
     delay_ticks: usize,
@@ -105,8 +179,8 @@ struct Expert {
     weight: Lanes,
 }
 
-impl Matched {
-    pub(super) fn new(form: Form, settings: &Settings, delay_ticks: usize) -> Self {
+impl Learner {
+    fn new(form: Form, settings: &Settings, delay_ticks: usize) -> Self {
         let rate_hz = settings.rate_hz;
         let solve_hz = SOLVE_HZ[usize::from(matches!(form, Form::Paper(_)))];
         let every = ((rate_hz / solve_hz).round() as usize).max(1);
@@ -167,19 +241,14 @@ impl Matched {
         matches!(self.form, Form::Paper(_))
     }
 
-    /// Returns the age in ticks of the packet that the leader has now; without a delay the last packet is used.
-    pub(super) fn horizon(&self) -> usize {
+    /// Ticks back to the parcel that the leader has now; without a delay the last one stands for it.
+    fn horizon(&self) -> usize {
         self.delay_ticks.max(1)
     }
 
     /// Adds the follower's newest motion and force (N), `None` if either was not measured; `sent`: the model of
     /// [`horizon`](Self::horizon) ticks ago. Returns the model to send.
-    pub(super) fn step(
-        &mut self,
-        posture: &Posture,
-        force_n: Option<Lanes>,
-        sent: Option<&MatchedModel>,
-    ) -> &MatchedModel {
+    fn step(&mut self, posture: &Posture, force_n: Option<Lanes>, sent: Option<&MatchedModel>) -> &MatchedModel {
         if let Some(force_n) = force_n {
             self.learn(posture, force_n);
         }
@@ -208,8 +277,8 @@ impl Matched {
         Some((sent, self.twin.step(sent, posture)))
     }
 
-    /// Advances without learning: the parameters stay active.
-    pub(super) fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
+    /// Goes on without learning: what was learnt stays in force.
+    fn rest(&mut self, posture: &Posture, sent: Option<&MatchedModel>) {
         self.leader(posture, sent);
         let phase = self.tick % self.every;
         for ridge in 0..self.ridges.len() {
@@ -337,14 +406,14 @@ impl Matched {
     }
 }
 
-impl Method for Matched {
+impl Follower for Learner {
     fn serves(&self, modes: ModeSet) -> bool {
         modes.contains(if self.is_paper() { Mode::Nima } else { Mode::Matched })
     }
 
     fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, report: &mut Report) {
         let is_paper = self.is_paper();
-        let sent = seen.sent.map(|sent| if is_paper { &sent.nima } else { &sent.matched });
+        let sent = seen.sent.map(|sent| if is_paper { &sent.models.nima } else { &sent.models.matched });
         if !seen.learn {
             return self.rest(seen.posture, sent);
         }
@@ -352,10 +421,10 @@ impl Method for Matched {
         let model = *self.step(seen.posture, measured.then_some(seen.force_n), sent);
         if is_paper {
             report.nima_degree = model.degree;
-            parcel.nima = model;
+            parcel.models.nima = model;
         } else {
             report.matched_degree = model.degree;
-            parcel.matched = model;
+            parcel.models.matched = model;
         }
     }
 

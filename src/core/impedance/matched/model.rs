@@ -1,7 +1,11 @@
 //! The model that crosses the link, and the force that the hand's own motion produces with it.
 
 use super::{
-    super::{anchored::within, messages::Posture},
+    super::{
+        MAX_DEGREE,
+        messages::Posture,
+        packed::{Numbers, Reader, Writer},
+    },
     form::{COLUMNS, Form},
     slip::{SLIPS, Slip},
 };
@@ -40,9 +44,8 @@ impl MatchedModel {
         offset_n: Lanes::ZERO,
     };
 
-    /// Returns the force (N) for a motion; `None` without a model or if the force is not finite. `slip`: this end's
-    /// springs, which are advanced.
-    pub(in super::super) fn force(&self, now: &Posture, slip: &mut Slip) -> Option<Lanes> {
+    /// The force (N) for a motion; `None` without a model or where it is not finite. `slip`: this end's springs, which move on.
+    pub(super) fn force(&self, now: &Posture, slip: &mut Slip) -> Option<Lanes> {
         if self.degree == 0 {
             return None;
         }
@@ -52,6 +55,40 @@ impl MatchedModel {
 
     pub(super) fn clipped(&self, force_n: Lanes) -> Lanes {
         let [low, high] = self.bounds_n;
-        within(force_n, low, high)
+        force_n.within(low, high)
+    }
+}
+
+impl Numbers for MatchedModel {
+    const NONE: Self = Self::NONE;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        let (form, degree) = match self.form {
+            Form::Tissue => (0, 0),
+            Form::Sliding => (1, 0),
+            Form::Coupled => (2, 0),
+            Form::Paper(degree) => (3, degree),
+        };
+        row.put(f64::from(form));
+        row.put(f64::from(degree));
+        row.put(f64::from(self.degree));
+        for lanes in [self.one, self.origin, self.bounds_n[0], self.bounds_n[1], self.offset_n] {
+            row.lanes(lanes);
+        }
+        self.gives.iter().for_each(|give| row.put(*give));
+        row.row(&self.parameters);
+    }
+
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        let form = row.count(3)?;
+        let paper = row.count(MAX_DEGREE)? as u8;
+        let form = [Form::Tissue, Form::Sliding, Form::Coupled, Form::Paper(paper)][form];
+        let degree = row.count(MAX_DEGREE)? as u8;
+        let one = row.lanes()?;
+        let origin = row.lanes()?;
+        let bounds_n = [row.lanes()?, row.lanes()?];
+        let offset_n = row.lanes()?;
+        let gives = [row.take()?, row.take()?];
+        Some(Self { form, degree, one, parameters: row.row()?, origin, gives, bounds_n, offset_n })
     }
 }

@@ -1,7 +1,7 @@
 //! Friction across a contact: the tip drags along the surface under a load that only the other axes measure.
 
 use super::{
-    super::{anchored::within, messages::Posture, pace::share},
+    super::{messages::Posture, pace::share},
     form::{Row, product},
     model::MatchedModel,
 };
@@ -33,7 +33,7 @@ impl Stretch {
         let load_n = load(force_n);
         for (held, give) in self.held.iter_mut().zip(gives) {
             let limit = load_n * *give;
-            *held = within(*held + way, -limit, limit);
+            *held = (*held + way).within(-limit, limit);
         }
         &self.held
     }
@@ -41,7 +41,7 @@ impl Stretch {
 
 /// The springs at the leader, and the follower's copy of them: their load is the force computed from the parameters.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct Slip {
+pub(super) struct Slip {
     stretch: Stretch,
     /// The force of the previous tick (N): the newest force depends on the springs.
     said_n: Lanes,

@@ -13,7 +13,7 @@ const MATCHED: [Form; 3] = [Form::Tissue, Form::Sliding, Form::Coupled];
 /// Both ends, and a link of `delay` ticks between them; the leader's own motion is an argument.
 struct Pair {
     follower_track: Track,
-    follower: Matched,
+    follower: Learner,
     leader_track: Track,
     leader_slip: Slip,
     link: Vec<MatchedModel>,
@@ -25,7 +25,7 @@ impl Pair {
         let delay = settings.delay_ticks(settings.delay_s);
         Self {
             follower_track: Track::new(settings),
-            follower: Matched::new(form, settings, delay),
+            follower: Learner::new(form, settings, delay),
             leader_track: Track::new(settings),
             leader_slip: Slip::default(),
             link: Vec::new(),

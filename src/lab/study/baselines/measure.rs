@@ -17,6 +17,7 @@ pub(super) fn measure(
     let samples = &source.recording.samples;
     let delay = (delay_s * rate_hz).round() as usize;
     let delay_ms = delay as f64 / rate_hz * 1e3;
+    nima_baselines::provide();
     let name = || source.name.clone();
     let needed = delay + 1;
     if samples.len() <= needed {

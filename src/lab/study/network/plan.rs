@@ -76,6 +76,7 @@ pub(super) struct Cell {
 
 /// Returns the cells, in the order in which they are run.
 pub(super) fn plan(options: &Options) -> Vec<Cell> {
+    nima_baselines::provide();
     let cells = of_one_clock(options);
     let on = |clock: &VirtualClock| {
         let clock = *clock;

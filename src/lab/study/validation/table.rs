@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use nima_core::impedance::Mode;
 use nima_machine::runtime::ClockProfile;
 use nima_training::Part;
 use serde::Serialize;
@@ -133,18 +132,9 @@ fn rendering(three: &Rendering) -> Vec<Row> {
         ),
     ];
     for figures in &three.at_horizon {
-        let why = match figures.mode {
-            Mode::Dfr => "the delayed force itself, for comparison",
-            Mode::Anchored => "our rendering: delayed force plus its learned change",
-            Mode::Linear | Mode::Literal => "at the horizon; the paper tests within the window only",
-            Mode::Matched => "parameters alone, the force from the hand's own motion",
-            Mode::Nima => "the paper's columns with a constant, a kept origin and a ridge",
-            Mode::Best => "anchored and matched, weighted by their recent errors",
-            Mode::Baseline(_) => "a method of others",
-        };
         let what =
             format!("{clock} clock: {}, {:.0} ms later, MAE and SD (N)", figures.mode.name(), 1e3 * three.delay_s);
-        all.push(row("III", what, &[], pair(figures.error), why));
+        all.push(row("III", what, &[], pair(figures.error), figures.mode.about()));
     }
     all
 }

@@ -36,6 +36,8 @@ impl Serialize for FollowerSettings {
 impl FollowerSettings {
     /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["kinova", "simulated", "external"];
+    /// The same on the screen.
+    pub(crate) const MAKERS: &[&str] = &["Kinova", "simulated", "external"];
 
     /// Returns the settings if the arm is made by Kinova.
     pub const fn kinova(&self) -> Option<&kinova::Settings> {

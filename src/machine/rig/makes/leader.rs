@@ -35,6 +35,8 @@ impl Serialize for LeaderSettings {
 impl LeaderSettings {
     /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["force_dimension", "haply", "external"];
+    /// The same on the screen.
+    pub(crate) const MAKERS: &[&str] = &["Force Dimension", "Haply", "external"];
 
     /// Returns the settings if the handle is made by Force Dimension.
     pub const fn force_dimension(&self) -> Option<&force_dimension::Settings> {

@@ -31,6 +31,8 @@ impl Serialize for SensorSettings {
 impl SensorSettings {
     /// Makes as named in a rig file, the default first.
     pub(super) const MAKES: &[&str] = &["bota", "external"];
+    /// The same on the screen.
+    pub(crate) const MAKERS: &[&str] = &["Bota", "external"];
 
     /// Returns the settings if the sensor is made by Bota.
     pub const fn bota(&self) -> Option<&bota::Settings> {

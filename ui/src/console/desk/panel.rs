@@ -1,51 +1,107 @@
 //! Panels of the Technician view: names, purposes, and minimum sizes.
 
-use egui::{Vec2, vec2};
+use egui::{Ui, Vec2, vec2};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    console::text,
+    console::{
+        live::Live,
+        panels::{degrees_ui, safety_ui},
+        text::desk as text,
+    },
     extras::{self, Extra},
+    language::Text,
 };
 
-/// A panel. Its name in the settings file is the variant's name in lower case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Panel {
-    Field,
-    Traces,
-    ForceSpace,
-    Feedback,
-    Devices,
-    Calibrations,
-    Gates,
-    Safety,
-    Horizon,
-    Degrees,
-    Timing,
-    Link,
-    Tradeoff,
+/// Smallest width of a panel of settings, and of one of figures, points.
+const KNOBS: f32 = 276.0;
+const FIGURES: f32 = 308.0;
+
+/// A kind of panel.
+#[derive(Clone, Copy)]
+struct Kind {
+    title: &'static Text,
+    meaning: &'static Text,
+    /// Width and height, points.
+    least: [f32; 2],
+    fills: bool,
+    shows: Option<fn(&mut Ui, &Live)>,
+}
+
+impl Kind {
+    /// One that fills the available space.
+    const fn filling(title: &'static Text, meaning: &'static Text, least: [f32; 2]) -> Self {
+        Self { title, meaning, least, fills: true, shows: None }
+    }
+
+    /// One of a fixed length.
+    const fn list(title: &'static Text, meaning: &'static Text, least_width: f32) -> Self {
+        Self { title, meaning, least: [least_width, 60.0], fills: false, shows: None }
+    }
+
+    /// It shows what the loop tells, and nothing else.
+    const fn shows(self, draw: fn(&mut Ui, &Live)) -> Self {
+        Self { shows: Some(draw), ..self }
+    }
+}
+
+/// Declares the panels from one list, in the order of the menu.
+macro_rules! panels {
+    ($(#[$attribute:meta])* enum Panel { $($(#[$doc:meta])* $panel:ident: $kind:expr,)* }) => {
+        $(#[$attribute])*
+        pub enum Panel {
+            $($(#[$doc])* $panel,)*
+        }
+
+        impl Panel {
+            /// All of them, in the order of the menu.
+            pub const ALL: [Self; [$(stringify!($panel)),*].len()] = [$(Self::$panel),*];
+
+            const fn kind(self) -> Kind {
+                match self {
+                    $(Self::$panel => $kind,)*
+                }
+            }
+        }
+    };
+}
+
+panels! {
+    /// A panel. Its name in the settings file is the variant's name in lower case.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    enum Panel {
+        /// The operating field in three dimensions.
+        Field: Kind::filling(&text::FIELD, &text::FIELD_HOVER, [160.0, 120.0]),
+        /// Forces over time.
+        Traces: Kind::filling(&text::TRACES, &text::TRACES_HOVER, [480.0, 250.0]),
+        /// Measured against rendered force in three dimensions.
+        ForceSpace: Kind::filling(&text::FORCE_SPACE, &text::FORCE_SPACE_HOVER, [200.0, 180.0]),
+        /// Interlock and gates of each arm.
+        Safety: Kind::filling(&text::SAFETY, &text::SAFETY_HOVER, [560.0, 120.0]).shows(safety_ui),
+        /// Mode, gain, delay, dead band.
+        Feedback: Kind::list(&text::FEEDBACK, &text::FEEDBACK_HOVER, KNOBS),
+        /// Why there is no force.
+        Gates: Kind::list(&text::WHY_NO_FORCE, &text::WHY_NO_FORCE_HOVER, KNOBS),
+        /// Calibrations in force, and buttons for the wizards.
+        Calibrations: Kind::list(&text::CALIBRATION, &text::CALIBRATION_HOVER, KNOBS),
+        /// The devices of the rig.
+        Devices: Kind::list(&text::DEVICES, &text::DEVICES_HOVER, KNOBS),
+        /// Error of each mode at the horizon.
+        Horizon: Kind::list(&text::ERROR_AT_THE_HORIZON, &text::ERROR_AT_THE_HORIZON_HOVER, FIGURES),
+        /// Chosen polynomial degrees.
+        Degrees: Kind::list(&text::DEGREES, &text::DEGREES_HOVER, FIGURES).shows(degrees_ui),
+        /// Timing of the loop.
+        Timing: Kind::list(&text::TIMING, &text::TIMING_HOVER, FIGURES),
+        /// The link to the follower's machine.
+        Link: Kind::list(&text::LINK, &text::LINK_HOVER, FIGURES),
+        /// Computing time against accuracy.
+        Tradeoff: Kind::list(&text::TRADE_OFF, &text::TRADE_OFF_HOVER, FIGURES),
+    }
 }
 
 impl Panel {
-    /// All panels, in the order of the menu.
-    pub const ALL: [Self; 13] = [
-        Self::Field,
-        Self::Traces,
-        Self::ForceSpace,
-        Self::Safety,
-        Self::Feedback,
-        Self::Gates,
-        Self::Calibrations,
-        Self::Devices,
-        Self::Horizon,
-        Self::Degrees,
-        Self::Timing,
-        Self::Link,
-        Self::Tradeoff,
-    ];
-
-    /// Panels of this build.
+    /// Those that this build has.
     pub fn built() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|panel| panel.is_built())
     }
@@ -60,55 +116,26 @@ impl Panel {
 
     /// Title on its tab and in the menu.
     pub fn title(self) -> &'static str {
-        match self {
-            Self::Field => text::desk::FIELD.get(),
-            Self::Traces => text::desk::TRACES.get(),
-            Self::ForceSpace => text::desk::FORCE_SPACE.get(),
-            Self::Feedback => text::desk::FEEDBACK.get(),
-            Self::Devices => text::desk::DEVICES.get(),
-            Self::Calibrations => text::desk::CALIBRATION.get(),
-            Self::Gates => text::desk::WHY_NO_FORCE.get(),
-            Self::Safety => text::desk::SAFETY.get(),
-            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON.get(),
-            Self::Degrees => text::desk::DEGREES.get(),
-            Self::Timing => text::desk::TIMING.get(),
-            Self::Link => text::desk::LINK.get(),
-            Self::Tradeoff => text::desk::TRADE_OFF.get(),
-        }
+        self.kind().title.get()
     }
 
     pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Field => text::desk::FIELD_HOVER.get(),
-            Self::Traces => text::desk::TRACES_HOVER.get(),
-            Self::ForceSpace => text::desk::FORCE_SPACE_HOVER.get(),
-            Self::Feedback => text::desk::FEEDBACK_HOVER.get(),
-            Self::Devices => text::desk::DEVICES_HOVER.get(),
-            Self::Calibrations => text::desk::CALIBRATION_HOVER.get(),
-            Self::Gates => text::desk::WHY_NO_FORCE_HOVER.get(),
-            Self::Safety => text::desk::SAFETY_HOVER.get(),
-            Self::Horizon => text::desk::ERROR_AT_THE_HORIZON_HOVER.get(),
-            Self::Degrees => text::desk::DEGREES_HOVER.get(),
-            Self::Timing => text::desk::TIMING_HOVER.get(),
-            Self::Link => text::desk::LINK_HOVER.get(),
-            Self::Tradeoff => text::desk::TRADE_OFF_HOVER.get(),
-        }
+        self.kind().meaning.get()
+    }
+
+    /// Draws it, if it shows what the loop tells and nothing else.
+    pub const fn shows(self) -> Option<fn(&mut Ui, &Live)> {
+        self.kind().shows
     }
 
     /// Minimum readable size, points; a smaller panel is scrolled.
     pub(super) const fn least(self) -> Vec2 {
-        match self {
-            Self::Field => vec2(160.0, 120.0),
-            Self::Traces => vec2(480.0, 250.0),
-            Self::ForceSpace => vec2(200.0, 180.0),
-            Self::Safety => vec2(560.0, 120.0),
-            Self::Feedback | Self::Devices | Self::Calibrations | Self::Gates => vec2(276.0, 60.0),
-            Self::Horizon | Self::Degrees | Self::Timing | Self::Link | Self::Tradeoff => vec2(308.0, 60.0),
-        }
+        let [width, height] = self.kind().least;
+        vec2(width, height)
     }
 
     /// Whether it fills the available space; other panels have a fixed length.
     pub(super) const fn fills(self) -> bool {
-        matches!(self, Self::Field | Self::Traces | Self::ForceSpace | Self::Safety)
+        self.kind().fills
     }
 }

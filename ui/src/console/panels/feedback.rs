@@ -5,7 +5,7 @@
 
 use egui::{Button, DragValue, RichText, Slider, SliderClamping, Ui, vec2};
 use nima_core::{
-    impedance::Mode,
+    impedance::{MODES, Mode},
     limits::{GAIN, GAIN_ABOVE_ONE, Limits, SLIDER_DEAD_BAND_M_S, SLIDER_DELAY_S},
 };
 use nima_machine::messages::Command;
@@ -18,7 +18,7 @@ use crate::{
         widgets::{at_the_right, small},
     },
     extras::{self, Extra},
-    words::{mode_meaning, mode_name},
+    words::{OFFERED, mode_meaning, mode_name},
 };
 
 /// How long a control shows the requested value before it shows the active value again, s: the gain ramps at 2 per second.
@@ -61,14 +61,14 @@ pub fn feedback_ui(ui: &mut Ui, live: &mut Live, state: &mut FeedbackState, outb
 
 fn mode_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
-    let rows: [&[Mode]; 3] =
-        [&[Mode::Anchored, Mode::Dfr], &[Mode::Matched, Mode::Best], &[Mode::Nima, Mode::Literal, Mode::Linear]];
-    // A baseline method is computed, and offered, only if the rig file names it.
+    // Two in a row, and three in the last one where they are an odd number.
+    let (pairs, last) = OFFERED.split_at(MODES - 3 * (MODES % 2));
+    // A method of others is computed, and offered, only where the rig file names it.
     let baseline: &[Mode] = match &live.rig.mode {
         baseline @ Mode::Baseline(_) => std::slice::from_ref(baseline),
         _ => &[],
     };
-    for row in rows.into_iter().chain((!baseline.is_empty()).then_some(baseline)) {
+    for row in pairs.chunks(2).chain([last, baseline]).filter(|row| !row.is_empty()) {
         let between = ui.spacing().item_spacing.x * (row.len() - 1) as f32;
         let size = vec2((ui.available_width() - between) / row.len() as f32, 20.0);
         ui.horizontal(|ui| {

@@ -159,9 +159,10 @@ pub(super) fn gates(live: &Live, side: Side) -> [Gate; GATES] {
 fn note(live: &Live, side: Side, which: Which) -> String {
     let gates = &live.gates[side.index()];
     let chain = &live.rig.gates;
+    if which == Which::Permission {
+        return within(state_name(live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state)));
+    }
     match which {
-        Which::Permission => within(state_name(live.tick_of(side).map_or(LoopState::Idle, |tick| tick.state))),
-        Which::Validity => String::new(),
         Which::Age => text::gates::zero_after(chain.zero_after_s * 1e3),
         Which::DeadBand if live.gate_settings().static_hold => text::gates::DEAD_BAND_OFF.get().to_owned(),
         Which::DeadBand if gates.closed(Which::DeadBand) && gates.withheld_n.get() > 0.05 => {
@@ -174,6 +175,8 @@ fn note(live: &Live, side: Side, which: Which) -> String {
         Which::Ceiling => format!("{:.1} N", chain.ceiling_n.min(chain.device_limit_n)),
         Which::Governor if chain.handle_kg <= 0.0 => text::gates::GOVERNOR_OFF.get().to_owned(),
         Which::Governor => text::gates::governed(100.0 * gates.governed.get()),
+        // Nothing to set.
+        _ => String::new(),
     }
 }
 

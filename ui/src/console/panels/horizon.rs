@@ -10,7 +10,7 @@ use crate::console::{
     text, theme,
     widgets::{Sign, bar, sign, small},
 };
-use crate::words::{mode_meaning, mode_name, newtons_in_three, three_digits};
+use crate::words::{COMPARED, mode_meaning, mode_name, newtons_in_three, three_digits};
 
 /// Upper end of the bars, as a multiple of the error of delayed DFR.
 const LONGEST: f64 = 2.5;
@@ -30,8 +30,7 @@ pub fn horizon_ui(ui: &mut Ui, live: &Live, outbox: &mut Outbox) {
         outbox.push(Command::Compare(compares));
     }
     ui.add_space(2.0);
-    let own = [Mode::Best, Mode::Matched, Mode::Anchored, Mode::Dfr, Mode::Nima, Mode::Linear, Mode::Literal];
-    let modes = own.into_iter().chain(computed.baseline().map(Mode::Baseline));
+    let modes = COMPARED.into_iter().chain(computed.baseline().map(Mode::Baseline));
     for mode in modes.filter(|mode| computed.contains(*mode)) {
         mode_ui(ui, mode, live.figures.horizon_n[mode.index()], dfr_n, live.mode() == mode);
     }

@@ -9,8 +9,7 @@ use crate::console::{
     live::{Live, Of},
     outbox::Outbox,
     panels::{
-        calibrations_ui, degrees_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui, link_ui,
-        safety_ui, timing_ui,
+        calibrations_ui, devices_ui, feedback_ui, force_space_ui, forces_ui, gates_ui, horizon_ui, link_ui, timing_ui,
     },
     scene3d::scene_ui,
     text,
@@ -40,9 +39,7 @@ pub(super) fn technician_ui(
         Panel::Devices => wishes.devices = devices_ui(ui, live, &mut panels.devices),
         Panel::Calibrations => wishes.calibration = acts(ui, past, |ui| calibrations_ui(ui, live, in_force, None)),
         Panel::Gates => gates_ui(ui, live, &mut panels.gates),
-        Panel::Safety => safety_ui(ui, live),
         Panel::Horizon => horizon_ui(ui, live, outbox),
-        Panel::Degrees => degrees_ui(ui, live),
         Panel::Timing => timing_ui(ui, live, &mut panels.timing),
         Panel::Link if past => {
             let elsewhere = live.of == Of::Elsewhere;
@@ -53,6 +50,7 @@ pub(super) fn technician_ui(
             let tradeoff = panels.tradeoff.as_mut();
             wishes.restart = acts(ui, past, |ui| tradeoff.and_then(|panel| panel.ui(ui, live, outbox)));
         }
+        shown => shown.shows().into_iter().for_each(|draw| draw(ui, live)),
     });
     panels.desk = desk;
     wishes

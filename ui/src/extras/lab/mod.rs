@@ -44,6 +44,7 @@ impl Extra for Lab {
     }
 
     fn begin(&self) {
+        nima_baselines::provide();
         nima_emulation::emulated::provide_handles();
     }
 

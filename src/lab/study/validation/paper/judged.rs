@@ -164,7 +164,7 @@ pub(super) fn horizon(
     let mut dfr = Errors::default();
     let mut stiffness = Vec::new();
     identify(recording, recipe, delay_s, |measured_n, identifier| {
-        let model = identifier.parcel().literal;
+        let model = identifier.parcel().models.literal;
         if model.degree > 0 {
             stiffness.push(model.coefficients[0].0.iter().fold(0.0_f64, |most, m| m.abs().max(most)));
         }

@@ -69,16 +69,18 @@ pub(super) fn plot_ui(ui: &mut Ui, figures: &SourceFigures, selected: Option<usi
 
 /// Shape, colour and size of a mode's markers.
 fn look(mode: Mode) -> (MarkerShape, Color32, f32) {
-    match mode {
-        Mode::Anchored => (MarkerShape::Circle, theme::now().rendered, 4.0),
-        Mode::Matched => (MarkerShape::Diamond, theme::now().rendered, 4.5),
-        Mode::Best => (MarkerShape::Up, theme::now().rendered, 4.5),
-        Mode::Dfr => (MarkerShape::Square, theme::now().measured, 5.0),
-        Mode::Linear => (MarkerShape::Up, theme::now().reference, 4.5),
-        Mode::Nima => (MarkerShape::Circle, theme::now().reference, 4.0),
-        Mode::Literal => (MarkerShape::Diamond, theme::now().reference, 4.5),
-        Mode::Baseline(_) => (MarkerShape::Cross, theme::now().reference, 4.5),
-    }
+    let now = theme::now();
+    let looks = [
+        (Mode::Anchored, MarkerShape::Circle, now.rendered, 4.0),
+        (Mode::Matched, MarkerShape::Diamond, now.rendered, 4.5),
+        (Mode::Best, MarkerShape::Up, now.rendered, 4.5),
+        (Mode::Dfr, MarkerShape::Square, now.measured, 5.0),
+        (Mode::Linear, MarkerShape::Up, now.reference, 4.5),
+        (Mode::Nima, MarkerShape::Circle, now.reference, 4.0),
+        (Mode::Literal, MarkerShape::Diamond, now.reference, 4.5),
+    ];
+    let look = looks.into_iter().find(|(known, ..)| *known == mode);
+    look.map_or((MarkerShape::Cross, now.reference, 4.5), |(_, shape, colour, radius)| (shape, colour, radius))
 }
 
 /// Points at the source's own rate and with the default differentiator that can be drawn.

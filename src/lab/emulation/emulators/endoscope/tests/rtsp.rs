@@ -10,7 +10,7 @@ use std::{
 use nima_endoscope::{Damage, Feed, Standing, Trouble, Wrong, time_code};
 use nima_testing::{real_time, unjudged};
 
-use super::{Feeding, SQUARE_PX, serve, time_us, until};
+use super::{SQUARE_PX, every_fault_is_told, is_live, serve, time_us, until};
 use crate::emulators::{EmulatedFault, Serving};
 
 /// Returns the RTSP address of the same emulator.
@@ -22,37 +22,19 @@ fn feed(serving: &Serving) -> Feed {
     Feed::start(rtsp(serving).parse().unwrap(), Some([640, 360]), || {}).unwrap()
 }
 
-fn is_live(look: &Feeding) -> bool {
-    look.standing == Standing::Live
-}
-
 #[test]
 fn a_stream_is_shown_and_every_fault_in_it_is_told_by_its_name() {
     let serving = serve();
     let feed = feed(&serving);
-    for fault in EmulatedFault::every() {
-        let told: fn(&Standing) -> bool = match fault {
-            EmulatedFault::Freeze => |standing| matches!(standing, Standing::Wrong(Wrong::Frozen(_))),
-            EmulatedFault::Black => |standing| *standing == Standing::Wrong(Wrong::Black),
-            EmulatedFault::Torn => {
-                |standing| matches!(standing, Standing::Wrong(Wrong::Damaged(Damage::Undecodable { .. })))
-            }
-            EmulatedFault::WrongSize => |standing| *standing == Standing::Wrong(Wrong::Size([320, 180], [640, 360])),
-            EmulatedFault::OtherFormat => {
-                |standing| matches!(standing, Standing::Lost(Trouble::OtherFormat { found, .. }) if found == "h265")
-            }
-            EmulatedFault::Disconnect => |standing| matches!(standing, Standing::Lost(Trouble::NobodyListens { .. })),
-            EmulatedFault::Silence => |standing| matches!(standing, Standing::Lost(Trouble::Silent { .. })),
-            EmulatedFault::Late => {
-                |standing| matches!(standing, Standing::Wrong(Wrong::Late(late)) if late.as_millis() > 300)
-            }
-            _ => continue,
-        };
-        until(&feed, "live", is_live);
-        serving.faults.set(fault);
-        until(&feed, fault.name(), |look| told(&look.standing));
-        serving.faults.set(EmulatedFault::None);
-    }
+    every_fault_is_told(&serving, &feed, |fault| match fault {
+        EmulatedFault::Torn => {
+            Some(|standing| matches!(standing, Standing::Wrong(Wrong::Damaged(Damage::Undecodable { .. }))))
+        }
+        EmulatedFault::OtherFormat => {
+            Some(|standing| matches!(standing, Standing::Lost(Trouble::OtherFormat { found, .. }) if found == "h265"))
+        }
+        _ => None,
+    });
     let look = until(&feed, "live", |look| {
         is_live(look) && look.picture.as_ref().is_some_and(|(_, picture)| time_us(picture).is_some())
     });

@@ -5,13 +5,14 @@
 //! not be iterated over hundreds of samples. Its columns are the newest force and the differences between the taps,
 //! which are equivalent to the taps and well conditioned; before any learning it is `f(t) = f(t - D)`, reflection.
 
-use super::{
-    BaselineModel,
-    rls::{Rls, dot},
+use nima_core::{
+    impedance::{Baseline, BaselineModel, Envelope, MAX_DELAY_S},
+    signal::{DelayLine, Lanes, Motion},
 };
+
 use crate::{
-    impedance::{anchored::within, envelope::Envelope, settings::MAX_DELAY_S},
-    signal::{DelayLine, Lanes},
+    Sender,
+    rls::{Rls, dot},
 };
 
 /// Number of taps, and number of their spacings in a delay (chosen on recordings, see docs/modes.md).
@@ -27,7 +28,7 @@ const SOLVE_HZ: f64 = 200.0;
 const COLUMNS: usize = 1 + TAPS;
 
 #[derive(Clone, Debug)]
-pub(super) struct Autoregressive {
+pub(crate) struct Autoregressive {
     delay_ticks: usize,
     spacing: usize,
     every: usize,
@@ -39,7 +40,24 @@ pub(super) struct Autoregressive {
 }
 
 impl Autoregressive {
-    pub(super) fn new(rate_hz: f64, delay_ticks: usize) -> Self {
+    /// The columns as they were `ago` ticks ago.
+    fn columns(&self, ago: usize) -> Option<[Lanes; COLUMNS]> {
+        let mut columns = [Lanes([1.0, 1.0, 1.0, 0.0]); COLUMNS];
+        let mut later = *self.past.get(ago)?;
+        columns[1] = later;
+        for (tap, column) in columns.iter_mut().enumerate().skip(2) {
+            let earlier = *self.past.get(ago + (tap - 1) * self.spacing)?;
+            *column = later - earlier;
+            later = earlier;
+        }
+        Some(columns)
+    }
+}
+
+impl Sender for Autoregressive {
+    const BASELINE: Baseline = Baseline::Autoregressive;
+
+    fn new(rate_hz: f64, delay_ticks: usize) -> Self {
         let most = (MAX_DELAY_S * rate_hz).ceil() as usize;
         let mut autoregressive = Self {
             delay_ticks,
@@ -55,15 +73,15 @@ impl Autoregressive {
         autoregressive
     }
 
-    /// Predicts over another delay from now on and discards the old model.
-    pub(super) fn set_delay(&mut self, delay_ticks: usize) {
+    /// Foretells another delay ahead; the model of the old one is forgotten.
+    fn set_delay(&mut self, delay_ticks: usize) {
         self.delay_ticks = delay_ticks;
         self.spacing = spacing(delay_ticks);
         self.rls.reset();
         self.coefficients = reflection();
     }
 
-    pub(super) fn step(&mut self, force_n: Option<Lanes>) -> BaselineModel {
+    fn step(&mut self, _motion: &Motion, force_n: Option<Lanes>) -> BaselineModel {
         let Some(newest) = force_n.or_else(|| self.past.get(0).copied()) else { return BaselineModel::Nothing };
         self.past.push(newest);
         self.envelope.see(newest, 1.0);
@@ -80,23 +98,10 @@ impl Autoregressive {
         // Until there are as many forces as taps, the prediction is reflection.
         let foretold = self.columns(0).map_or(newest, |now| dot(&self.coefficients, &now));
         let [low, high] = self.envelope.bounds_n();
-        BaselineModel::Forecast { force_n: within(foretold, low, high) }
+        BaselineModel::Forecast { force_n: foretold.within(low, high) }
     }
 
-    /// Returns the columns of `ago` ticks ago.
-    fn columns(&self, ago: usize) -> Option<[Lanes; COLUMNS]> {
-        let mut columns = [Lanes([1.0, 1.0, 1.0, 0.0]); COLUMNS];
-        let mut later = *self.past.get(ago)?;
-        columns[1] = later;
-        for (tap, column) in columns.iter_mut().enumerate().skip(2) {
-            let earlier = *self.past.get(ago + (tap - 1) * self.spacing)?;
-            *column = later - earlier;
-            later = earlier;
-        }
-        Some(columns)
-    }
-
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.tick = 0;
         self.past.clear();
         self.rls.reset();

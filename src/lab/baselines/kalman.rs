@@ -7,34 +7,40 @@
 //! filter of the textbooks, which overshoots by the whole rate times the delay. The gain is the fixed point of the
 //! Riccati equation; the leader extrapolates over the packet's age.
 
-use super::BaselineModel;
-use crate::signal::Lanes;
+use nima_core::{
+    impedance::{Baseline, BaselineModel},
+    signal::{Lanes, Motion},
+};
+
+use crate::Sender;
 
 /// Time constant of the rate (s), and bandwidth of the filter (Hz): `w^4` is the spectral density of the noise divided
 /// by that of the measurement (chosen on recordings, see docs/modes.md).
 const LASTING_S: f64 = 0.005;
 const BANDWIDTH_HZ: f64 = 100.0;
 
-/// Returns the force extrapolated from this state over a time.
-pub(super) fn extrapolated(force_n: Lanes, rate_n_s: Lanes, age_s: f64) -> Lanes {
+/// The force that this state leads to after a time.
+pub(crate) fn extrapolated(force_n: Lanes, rate_n_s: Lanes, age_s: f64) -> Lanes {
     force_n - rate_n_s * (LASTING_S * libm::expm1(-age_s / LASTING_S))
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Kalman {
+pub(crate) struct Kalman {
     period_s: f64,
     lasting: f64,
     gain: [f64; 2],
     state: Option<[Lanes; 2]>,
 }
 
-impl Kalman {
-    pub(super) fn new(rate_hz: f64) -> Self {
+impl Sender for Kalman {
+    const BASELINE: Baseline = Baseline::Kalman;
+
+    fn new(rate_hz: f64, _delay_ticks: usize) -> Self {
         let period_s = rate_hz.recip();
         Self { period_s, lasting: libm::exp(-period_s / LASTING_S), gain: gain(rate_hz), state: None }
     }
 
-    pub(super) fn step(&mut self, force_n: Option<Lanes>) -> BaselineModel {
+    fn step(&mut self, _motion: &Motion, force_n: Option<Lanes>) -> BaselineModel {
         if let Some([force, rate]) = &mut self.state {
             // A missing force leaves the state unchanged, because the leader extrapolates by age.
             if let Some(measured) = force_n {
@@ -49,7 +55,7 @@ impl Kalman {
         self.state.map_or(BaselineModel::Nothing, |[force_n, rate_n_s]| BaselineModel::Trend { force_n, rate_n_s })
     }
 
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.state = None;
     }
 }

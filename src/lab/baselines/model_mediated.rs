@@ -11,13 +11,14 @@
 //! a contact on each side of the surface (an instrument between two walls); an offset, damping and mass of the
 //! instrument are fitted too; and the force stays within the range of past forces, as in our own modes.
 
-use super::{
-    kept,
-    rls::{Rls, dot},
-};
-use crate::{
-    impedance::{anchored::within, envelope::Envelope},
+use nima_core::{
+    impedance::{Baseline, BaselineModel, Contact, Envelope},
     signal::{Lanes, Motion},
+};
+
+use crate::{
+    Sender, kept,
+    rls::{Rls, dot},
 };
 
 /// Memory (s) and ridge (s) of the regression, and memory of the errors (s) (chosen on recordings, see docs/modes.md).
@@ -38,57 +39,37 @@ const ROOM: f64 = 0.05;
 const COLUMNS: usize = 7;
 const SIDES: usize = 4;
 
-/// The model sent over the link: a Hunt-Crossley contact on each side of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    pub surface_m: Lanes,
-    /// Unit of depth (m): depths are divided by it.
-    pub reach_m: Lanes,
-    pub exponent: Lanes,
-    /// For the sides above and below the surface: stiffness (N at the reach) and damping (N s/m at the reach); then the
-    /// offset (N), the instrument's damping (N s/m) and mass (kg).
-    pub parameters: [Lanes; COLUMNS],
-    /// Minimum and maximum force rendered (N).
-    pub bounds_n: [Lanes; 2],
+const NONE: Contact = Contact {
+    surface_m: Lanes::ZERO,
+    reach_m: Lanes::ZERO,
+    exponent: Lanes::ZERO,
+    parameters: [Lanes::ZERO; COLUMNS],
+    bounds_n: [Lanes::ZERO; 2],
+};
+
+/// The force (N) of a contact for a motion.
+pub(crate) fn force(contact: &Contact, own: &Motion) -> Lanes {
+    let force_n = dot(&contact.parameters, &columns(contact, own));
+    let [low, high] = contact.bounds_n;
+    // A limit would turn what is not a number into one of its edges.
+    if force_n.is_finite() { force_n.within(low, high) } else { force_n }
 }
 
-impl Contact {
-    const NONE: Self = Self {
-        surface_m: Lanes::ZERO,
-        reach_m: Lanes::ZERO,
-        exponent: Lanes::ZERO,
-        parameters: [Lanes::ZERO; COLUMNS],
-        bounds_n: [Lanes::ZERO; 2],
-    };
+fn columns(contact: &Contact, motion: &Motion) -> [Lanes; COLUMNS] {
+    // Signed, in reaches.
+    let depth = (motion.x - contact.surface_m) * contact.reach_m.recip_or_zero();
+    let power = |side: f64| (depth * side).zip(contact.exponent, |depth, n| power(depth.max(0.0), n));
+    let above = power(1.0);
+    let below = power(-1.0);
+    [above, above * motion.v, below, below * motion.v, Lanes([1.0, 1.0, 1.0, 0.0]), motion.v, motion.a]
+}
 
-    /// Returns the force (N) for a motion.
-    pub(super) fn force(&self, own: &Motion) -> Lanes {
-        let force_n = dot(&self.parameters, &self.columns(own));
-        let [low, high] = self.bounds_n;
-        // Clamping would turn a NaN into one of the limits.
-        if force_n.is_finite() { within(force_n, low, high) } else { force_n }
-    }
-
-    /// Returns the signed depth, in units of the reach.
-    fn depth(&self, motion: &Motion) -> Lanes {
-        (motion.x - self.surface_m) * self.reach_m.recip_or_zero()
-    }
-
-    fn columns(&self, motion: &Motion) -> [Lanes; COLUMNS] {
-        let depth = self.depth(motion);
-        let power = |side: f64| (depth * side).zip(self.exponent, |depth, n| power(depth.max(0.0), n));
-        let above = power(1.0);
-        let below = power(-1.0);
-        [above, above * motion.v, below, below * motion.v, Lanes([1.0, 1.0, 1.0, 0.0]), motion.v, motion.a]
-    }
-
-    /// Copies another contact on one axis; both have the same reach.
-    fn take(&mut self, lane: usize, better: &Self) {
-        self.surface_m[lane] = better.surface_m[lane];
-        self.exponent[lane] = better.exponent[lane];
-        for (parameter, better) in self.parameters.iter_mut().zip(&better.parameters) {
-            parameter[lane] = better[lane];
-        }
+/// Takes over another contact on one axis; the reach is the same.
+fn take(contact: &mut Contact, lane: usize, better: &Contact) {
+    contact.surface_m[lane] = better.surface_m[lane];
+    contact.exponent[lane] = better.exponent[lane];
+    for (parameter, better) in contact.parameters.iter_mut().zip(&better.parameters) {
+        parameter[lane] = better[lane];
     }
 }
 
@@ -111,7 +92,7 @@ struct Candidate {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct ModelMediated {
+pub(crate) struct ModelMediated {
     errors_kept: f64,
     every: usize,
     tick: usize,
@@ -122,42 +103,7 @@ pub(super) struct ModelMediated {
 }
 
 impl ModelMediated {
-    pub(super) fn new(rate_hz: f64) -> Self {
-        let rls = Rls::new(MEMORY_S, RIDGE_S, rate_hz);
-        let mut model_mediated = Self {
-            errors_kept: kept(ERROR_S, rate_hz),
-            every: ((rate_hz / SOLVE_HZ).round() as usize).max(1),
-            tick: 0,
-            candidates: std::array::from_fn(|_| Candidate {
-                contact: Contact::NONE,
-                rls: rls.clone(),
-                error_n: Lanes::ZERO,
-            }),
-            range_m: [Lanes::ZERO; 2],
-            envelope: Envelope::new(rate_hz),
-            contact: Contact::NONE,
-        };
-        model_mediated.reset();
-        model_mediated
-    }
-
-    pub(super) fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> Contact {
-        let Some(force_n) = force_n else { return self.contact };
-        self.envelope.see(force_n, 1.0);
-        self.visit(motion);
-        for (i, candidate) in self.candidates.iter_mut().enumerate() {
-            candidate.learn(motion, force_n, self.errors_kept);
-            // One candidate after the other, and all of them on the first tick.
-            if self.tick == 0 || self.tick % self.every == i % self.every {
-                candidate.solve();
-            }
-        }
-        self.contact = self.best();
-        self.tick = self.tick.wrapping_add(1);
-        self.contact
-    }
-
-    /// Enlarges the range to include the follower's position, and moves the surfaces accordingly.
+    /// Enlarges the range to where the follower is, and brings the surfaces to it.
     fn visit(&mut self, motion: &Motion) {
         if self.tick == 0 {
             self.range_m = [motion.x; 2];
@@ -190,29 +136,64 @@ impl ModelMediated {
             for lane in 0..3 {
                 if candidate.error_n[lane] < least_n[lane] {
                     least_n[lane] = candidate.error_n[lane];
-                    best.take(lane, &candidate.contact);
+                    take(&mut best, lane, &candidate.contact);
                 }
             }
         }
         Contact { bounds_n: self.envelope.bounds_n(), ..best }
     }
+}
 
-    pub(super) fn reset(&mut self) {
+impl Sender for ModelMediated {
+    const BASELINE: Baseline = Baseline::ModelMediated;
+
+    fn new(rate_hz: f64, _delay_ticks: usize) -> Self {
+        let rls = Rls::new(MEMORY_S, RIDGE_S, rate_hz);
+        let mut model_mediated = Self {
+            errors_kept: kept(ERROR_S, rate_hz),
+            every: ((rate_hz / SOLVE_HZ).round() as usize).max(1),
+            tick: 0,
+            candidates: std::array::from_fn(|_| Candidate { contact: NONE, rls: rls.clone(), error_n: Lanes::ZERO }),
+            range_m: [Lanes::ZERO; 2],
+            envelope: Envelope::new(rate_hz),
+            contact: NONE,
+        };
+        model_mediated.reset();
+        model_mediated
+    }
+
+    fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel {
+        let Some(force_n) = force_n else { return BaselineModel::Contact(self.contact) };
+        self.envelope.see(force_n, 1.0);
+        self.visit(motion);
+        for (i, candidate) in self.candidates.iter_mut().enumerate() {
+            candidate.learn(motion, force_n, self.errors_kept);
+            // One after the other, and all on the first tick.
+            if self.tick == 0 || self.tick % self.every == i % self.every {
+                candidate.solve();
+            }
+        }
+        self.contact = self.best();
+        self.tick = self.tick.wrapping_add(1);
+        BaselineModel::Contact(self.contact)
+    }
+
+    fn reset(&mut self) {
         for (i, candidate) in self.candidates.iter_mut().enumerate() {
             let exponent = Lanes::splat(EXPONENTS[i / PLACES]);
-            candidate.contact = Contact { exponent, ..Contact::NONE };
+            candidate.contact = Contact { exponent, ..NONE };
             candidate.error_n = Lanes::ZERO;
             candidate.rls.reset();
         }
         self.envelope.reset();
         self.tick = 0;
-        self.contact = Contact::NONE;
+        self.contact = NONE;
     }
 }
 
 impl Candidate {
     fn learn(&mut self, motion: &Motion, force_n: Lanes, kept: f64) {
-        let columns = self.contact.columns(motion);
+        let columns = columns(&self.contact, motion);
         let error_n = (force_n - dot(&self.contact.parameters, &columns)).map(f64::abs);
         self.error_n = (error_n + (self.error_n - error_n) * kept).settled();
         self.rls.learn(&columns, force_n);

@@ -9,8 +9,12 @@
 //! without delay in this loop and the follower tracks a position. This version is therefore not passive by
 //! construction.
 
-use super::kept;
-use crate::signal::{Lanes, Motion};
+use nima_core::{
+    impedance::{Baseline, BaselineModel, Wave},
+    signal::{Lanes, Motion},
+};
+
+use crate::{Sender, kept};
 
 /// Wave impedance as a fraction of the force per speed in motion, `sum |(f - mean f) v| / sum v^2`: the publication
 /// leaves it to the task, and a number in N s/m would suit only one device and one unit (chosen on recordings, see
@@ -19,24 +23,14 @@ const SHARE: f64 = 0.4;
 /// Memory of the sums, and of the mean force (s).
 const MEMORY_S: f64 = 20.0;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wave {
-    /// `w = (b v - F) / sqrt(2 b)` at the follower (square root of W).
-    pub returning: Lanes,
-    /// Wave impedance `b` (N s/m).
-    pub impedance_n_s_m: Lanes,
-}
-
-impl Wave {
-    /// Decodes the force (N) with the leader's own velocity.
-    pub(super) fn force(&self, own: &Motion) -> Lanes {
-        let b = self.impedance_n_s_m;
-        self.returning * (b * 2.0).sqrt() - own.v * b
-    }
+/// The force (N) of a returning wave, decoded with the leader's own velocity.
+pub(crate) fn decoded(wave: &Wave, own: &Motion) -> Lanes {
+    let b = wave.impedance_n_s_m;
+    wave.returning * (b * 2.0).sqrt() - own.v * b
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Waves {
+pub(crate) struct Waves {
     kept: f64,
     seen: f64,
     mean_n: Lanes,
@@ -45,8 +39,10 @@ pub(super) struct Waves {
     last_n: Lanes,
 }
 
-impl Waves {
-    pub(super) fn new(rate_hz: f64) -> Self {
+impl Sender for Waves {
+    const BASELINE: Baseline = Baseline::Waves;
+
+    fn new(rate_hz: f64, _delay_ticks: usize) -> Self {
         Self {
             kept: kept(MEMORY_S, rate_hz),
             seen: 0.0,
@@ -56,7 +52,7 @@ impl Waves {
         }
     }
 
-    pub(super) fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> Wave {
+    fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel {
         if let Some(force_n) = force_n {
             self.last_n = force_n;
             // A plain mean at first, then one with forgetting.
@@ -71,10 +67,11 @@ impl Waves {
         // Never zero, so that the wave carries the force; at zero motion it is small enough to add nothing to the
         // force.
         let b = (powers * squares.recip_or_zero() * SHARE).map(|b| b.clamp(1e-12, 1e12));
-        Wave { returning: (b * motion.v + self.last_n) / (b * 2.0).sqrt(), impedance_n_s_m: b }
+        let returning = (b * motion.v + self.last_n) / (b * 2.0).sqrt();
+        BaselineModel::Wave(Wave { returning, impedance_n_s_m: b })
     }
 
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.seen = 0.0;
         self.mean_n = Lanes::ZERO;
         self.sums = [Lanes::ZERO; 2];

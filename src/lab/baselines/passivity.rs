@@ -12,35 +12,42 @@
 //! The observer and controller at the follower are omitted, because the motion reaches the follower without delay in
 //! this loop.
 
-use crate::signal::{Lanes, Motion};
+use nima_core::{
+    impedance::{Baseline, BaselineModel},
+    signal::{Lanes, Motion},
+};
+
+use crate::Sender;
 
 /// The follower's part: energy that the tissue returns.
 #[derive(Clone, Debug)]
-pub(super) struct Returned {
+pub(crate) struct Returned {
     period_s: f64,
     energy_j: Lanes,
 }
 
-impl Returned {
-    pub(super) fn new(rate_hz: f64) -> Self {
+impl Sender for Returned {
+    const BASELINE: Baseline = Baseline::Passivity;
+
+    fn new(rate_hz: f64, _delay_ticks: usize) -> Self {
         Self { period_s: rate_hz.recip(), energy_j: Lanes::ZERO }
     }
 
-    pub(super) fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> Lanes {
+    fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel {
         if let Some(force_n) = force_n {
             self.energy_j += given(force_n, motion, self.period_s);
         }
-        self.energy_j
+        BaselineModel::Returned { energy_j: self.energy_j }
     }
 
-    pub(super) fn reset(&mut self) {
+    fn reset(&mut self) {
         self.energy_j = Lanes::ZERO;
     }
 }
 
 /// The leader's part: observer and controller.
 #[derive(Clone, Debug)]
-pub(super) struct Controller {
+pub(crate) struct Controller {
     period_s: f64,
     came_j: Lanes,
     /// `E_in - E_out + E_pc`.
@@ -48,12 +55,12 @@ pub(super) struct Controller {
 }
 
 impl Controller {
-    pub(super) fn new(rate_hz: f64) -> Self {
+    pub(crate) fn new(rate_hz: f64) -> Self {
         Self { period_s: rate_hz.recip(), came_j: Lanes::ZERO, store_j: Lanes::ZERO }
     }
 
-    /// Returns the force (N) for the hand: the received force plus the controller's damping.
-    pub(super) fn step(&mut self, force_n: Lanes, came_j: Lanes, own: &Motion) -> Lanes {
+    /// The force (N) for the hand: the one that came and what the controller adds to it.
+    pub(crate) fn step(&mut self, force_n: Lanes, came_j: Lanes, own: &Motion) -> Lanes {
         if !came_j.is_finite() {
             return force_n;
         }
@@ -67,7 +74,7 @@ impl Controller {
         force_n + damping_n
     }
 
-    pub(super) fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.came_j = Lanes::ZERO;
         self.store_j = Lanes::ZERO;
     }

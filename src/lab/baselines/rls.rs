@@ -1,8 +1,8 @@
 //! Recursive least squares with exponential forgetting, in information form, for three axes at once.
 
-use crate::signal::{Lanes, NOTHING};
+use nima_core::signal::{Lanes, NOTHING};
 
-use super::kept;
+use crate::kept;
 
 /// Memory of the columns' mean squares, which make the ridge independent of units (s): longer than the memory of the
 /// fit, so that a pause in the motion does not change the ridge.
@@ -14,7 +14,7 @@ const SQUARES_S: f64 = 20.0;
 /// inverse of the initial covariance and is not forgotten: without motion the covariance of the usual recursion grows
 /// without bound.
 #[derive(Clone, Debug)]
-pub(super) struct Rls<const N: usize> {
+pub(crate) struct Rls<const N: usize> {
     kept: f64,
     ridge: f64,
     squares_ticks: f64,
@@ -26,8 +26,8 @@ pub(super) struct Rls<const N: usize> {
 }
 
 impl<const N: usize> Rls<N> {
-    /// Creates a regression with a memory (s), and a ridge in seconds of typical columns that confirm the prior.
-    pub(super) fn new(memory_s: f64, ridge_s: f64, rate_hz: f64) -> Self {
+    /// A memory (s), and a ridge in seconds of typical columns that say "as before".
+    pub(crate) fn new(memory_s: f64, ridge_s: f64, rate_hz: f64) -> Self {
         Self {
             kept: kept(memory_s, rate_hz),
             ridge: ridge_s * rate_hz,
@@ -39,8 +39,8 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// Adds the columns `q` of one sample and its target.
-    pub(super) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
+    /// Takes in the columns `q` of one sample and its target.
+    pub(crate) fn learn(&mut self, q: &[Lanes; N], target: Lanes) {
         self.seen = (self.seen + 1.0).min(self.squares_ticks);
         let share = 1.0 / self.seen;
         for (j, row) in self.gram.iter_mut().enumerate() {
@@ -52,8 +52,8 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// Converts the samples to other units: column `j` is multiplied by `factors[j]`.
-    pub(super) fn rescale(&mut self, factors: &[Lanes; N]) {
+    /// The same samples in other units: column `j` becomes `factors[j]` times what it was.
+    pub(crate) fn rescale(&mut self, factors: &[Lanes; N]) {
         for (j, factor) in factors.iter().enumerate() {
             for (sum, other) in self.gram[j].iter_mut().zip(factors).take(j + 1) {
                 *sum = *sum * *factor * *other;
@@ -63,8 +63,8 @@ impl<const N: usize> Rls<N> {
         }
     }
 
-    /// Returns the parameters, shrunk towards `prior`; `prior` itself without any data.
-    pub(super) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
+    /// The parameters, shrunk towards `prior`; that itself where nothing is known.
+    pub(crate) fn solve(&self, prior: &[Lanes; N]) -> [Lanes; N] {
         let mut factor = [[Lanes::ZERO; N]; N];
         let mut inverse = [Lanes::ZERO; N];
         let mut z = [Lanes::ZERO; N];
@@ -93,7 +93,7 @@ impl<const N: usize> Rls<N> {
         parameters
     }
 
-    pub(super) fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         self.seen = 0.0;
         self.gram = [[Lanes::ZERO; N]; N];
         self.right = [Lanes::ZERO; N];
@@ -101,7 +101,8 @@ impl<const N: usize> Rls<N> {
     }
 }
 
-pub(super) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
+/// Sum of the products of the entries.
+pub(crate) fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
     a.iter().zip(b).fold(Lanes::ZERO, |sum, (a, b)| sum + *a * *b)
 }
 

@@ -1,0 +1,146 @@
+//! The methods of others by their names, and what each of them sends. They are computed by the crate `nima-baselines`, one at most.
+
+use serde::{Deserialize, Serialize};
+
+use super::packed::{Numbers, Reader, Writer};
+use crate::signal::Lanes;
+
+/// A method of others, computed to compare with; see [`add_baselines`](super::add_baselines).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Baseline {
+    /// Model-mediated teleoperation: a Hunt-Crossley contact by recursive least squares.
+    ModelMediated,
+    /// Wave variables, the way back.
+    Waves,
+    /// Time-domain passivity with the energy that the tissue returned, the way back.
+    Passivity,
+    /// Extrapolation by a Kalman filter of force and its rate.
+    Kalman,
+    /// Extrapolation by an autoregressive model of the force, by recursive least squares.
+    Autoregressive,
+}
+
+impl Baseline {
+    /// Every baseline.
+    pub const ALL: [Self; 5] = [Self::ModelMediated, Self::Waves, Self::Passivity, Self::Kalman, Self::Autoregressive];
+
+    /// The name used on the command line, in files and on the screen.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ModelMediated => "model_mediated",
+            Self::Waves => "waves",
+            Self::Passivity => "passivity",
+            Self::Kalman => "kalman",
+            Self::Autoregressive => "autoregressive",
+        }
+    }
+}
+
+/// What a baseline sends besides the force: plain numbers, fixed size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "it crosses the link by value, in a parcel of fixed size")]
+pub enum BaselineModel {
+    /// No baseline is computed, or it knows nothing yet.
+    Nothing,
+    /// Model-mediated teleoperation: the contact.
+    Contact(Contact),
+    /// Wave variables: the returning wave.
+    Wave(Wave),
+    /// Time-domain passivity: the energy that the tissue has returned so far (J).
+    Returned {
+        /// Per axis, never falling.
+        energy_j: Lanes,
+    },
+    /// Kalman: the filtered force and its rate, which the leader extrapolates.
+    Trend {
+        /// N.
+        force_n: Lanes,
+        /// N/s.
+        rate_n_s: Lanes,
+    },
+    /// Autoregressive: the force foretold for one delay later.
+    Forecast {
+        /// N.
+        force_n: Lanes,
+    },
+}
+
+/// A Hunt-Crossley contact on each side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The surface (m).
+    pub surface_m: Lanes,
+    /// Depth by which depths are divided (m).
+    pub reach_m: Lanes,
+    /// `n`.
+    pub exponent: Lanes,
+    /// For the side above and below the surface stiffness (N at the reach) and damping (N s/m at the reach); then the offset (N), the
+    /// instrument's damping (N s/m) and mass (kg).
+    pub parameters: [Lanes; 7],
+    /// Least and greatest force rendered (N).
+    pub bounds_n: [Lanes; 2],
+}
+
+/// A returning wave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// `w = (b v - F) / sqrt(2 b)` at the follower (square root of W).
+    pub returning: Lanes,
+    /// Wave impedance `b` (N s/m).
+    pub impedance_n_s_m: Lanes,
+}
+
+impl Numbers for BaselineModel {
+    const NONE: Self = Self::Nothing;
+
+    fn write(&self, row: &mut Writer<'_>) {
+        match self {
+            Self::Nothing => row.put(0.0),
+            Self::Contact(contact) => {
+                row.put(1.0);
+                for lanes in
+                    [contact.surface_m, contact.reach_m, contact.exponent, contact.bounds_n[0], contact.bounds_n[1]]
+                {
+                    row.lanes(lanes);
+                }
+                row.row(&contact.parameters);
+            }
+            Self::Wave(wave) => {
+                row.put(2.0);
+                row.lanes(wave.returning);
+                row.lanes(wave.impedance_n_s_m);
+            }
+            Self::Returned { energy_j } => {
+                row.put(3.0);
+                row.lanes(*energy_j);
+            }
+            Self::Trend { force_n, rate_n_s } => {
+                row.put(4.0);
+                row.lanes(*force_n);
+                row.lanes(*rate_n_s);
+            }
+            Self::Forecast { force_n } => {
+                row.put(5.0);
+                row.lanes(*force_n);
+            }
+        }
+    }
+
+    fn read(row: &mut Reader<'_>) -> Option<Self> {
+        Some(match row.count(5)? {
+            0 => Self::Nothing,
+            1 => {
+                let surface_m = row.lanes()?;
+                let reach_m = row.lanes()?;
+                let exponent = row.lanes()?;
+                let bounds_n = [row.lanes()?, row.lanes()?];
+                Self::Contact(Contact { surface_m, reach_m, exponent, parameters: row.row()?, bounds_n })
+            }
+            2 => Self::Wave(Wave { returning: row.lanes()?, impedance_n_s_m: row.lanes()? }),
+            3 => Self::Returned { energy_j: row.lanes()? },
+            4 => Self::Trend { force_n: row.lanes()?, rate_n_s: row.lanes()? },
+            _ => Self::Forecast { force_n: row.lanes()? },
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! Methods of others, to compare with: each from its published form, as one more mode behind the same gates.
+//!
+//! They are built into the loop through the trait that the program's own modes have, [`Method`], by whoever calls [`provide`] first. At most
+//! one is computed, and only where it is asked for by name. Every axis is taken for a channel of its own, as in the publications, which
+//! have one degree of freedom. Sources, constants, figures, and what was left out: docs/modes.md.
+
+mod autoregressive;
+mod kalman;
+mod model_mediated;
+mod passivity;
+mod rls;
+#[cfg(test)]
+mod tests;
+mod waves;
+
+use std::{fmt::Debug, marker::PhantomData};
+
+use nima_core::{
+    impedance::{
+        Baseline, BaselineModel, Entry, Follower, Leader, Method, ModeSet, Moment, Parcel, Report, Scales, Seen,
+        Settings, add_baselines,
+    },
+    signal::{Lanes, Motion},
+};
+
+use crate::{
+    autoregressive::Autoregressive,
+    kalman::Kalman,
+    model_mediated::ModelMediated,
+    passivity::{Controller, Returned},
+    waves::Waves,
+};
+
+/// Adds the methods of others to the modes of this process. Call it before a loop is made or a session replayed; a second call changes
+/// nothing.
+pub fn provide() {
+    add_baselines(|baseline| match baseline {
+        Baseline::ModelMediated => Entry::of::<Other<ModelMediated>>(),
+        Baseline::Waves => Entry::of::<Other<Waves>>(),
+        Baseline::Passivity => Entry::of::<Other<Returned>>(),
+        Baseline::Kalman => Entry::of::<Other<Kalman>>(),
+        Baseline::Autoregressive => Entry::of::<Other<Autoregressive>>(),
+    });
+}
+
+/// What a method of others does at the follower.
+trait Sender: Clone + Debug + Send + Sync + 'static {
+    /// Its name.
+    const BASELINE: Baseline;
+
+    fn new(rate_hz: f64, delay_ticks: usize) -> Self;
+
+    /// Takes the follower's newest motion and force (N), `None` where either was not measured; returns what to send.
+    fn step(&mut self, motion: &Motion, force_n: Option<Lanes>) -> BaselineModel;
+
+    /// Foretells another delay ahead from now on.
+    fn set_delay(&mut self, _delay_ticks: usize) {}
+
+    fn reset(&mut self);
+}
+
+/// One of them as a mode.
+struct Other<S>(PhantomData<S>);
+
+impl<S: Sender> Method for Other<S> {
+    const NAME: &'static str = S::BASELINE.name();
+    const ABOUT: &'static str = "a method of others";
+
+    fn follower(settings: &Settings, delay_ticks: usize) -> Option<Box<dyn Follower>> {
+        Some(Box::new(AtFollower { scales: settings.scales, sender: S::new(settings.rate_hz, delay_ticks) }))
+    }
+
+    fn leader(settings: &Settings) -> Box<dyn Leader> {
+        Box::new(AtLeader {
+            scales: settings.scales,
+            period_s: settings.rate_hz.recip(),
+            controller: Controller::new(settings.rate_hz),
+        })
+    }
+}
+
+/// The follower's part.
+#[derive(Clone, Debug)]
+struct AtFollower<S> {
+    scales: Scales,
+    sender: S,
+}
+
+impl<S: Sender> Follower for AtFollower<S> {
+    /// There is memory for one of all baselines.
+    fn serves(&self, modes: ModeSet) -> bool {
+        modes.baseline().is_some()
+    }
+
+    fn begins(&self, before: ModeSet, now: ModeSet) -> bool {
+        now.baseline() != before.baseline()
+    }
+
+    fn take(&mut self, seen: &Seen<'_>, parcel: &mut Parcel, _report: &mut Report) {
+        let motion = seen.posture.motion(&self.scales);
+        parcel.models.baseline = self.sender.step(&motion, seen.good.then_some(seen.force_n));
+    }
+
+    fn set_delay(&mut self, delay_ticks: usize) {
+        self.sender.set_delay(delay_ticks);
+    }
+
+    fn reset(&mut self) {
+        self.sender.reset();
+    }
+}
+
+/// The leader's part, the same for all of them: what came says what to make of it.
+#[derive(Clone, Debug)]
+struct AtLeader {
+    scales: Scales,
+    period_s: f64,
+    controller: Controller,
+}
+
+impl Leader for AtLeader {
+    fn render(&mut self, moment: &Moment<'_>) -> Option<Lanes> {
+        moment.parcel.modes.baseline()?;
+        let own = moment.now.motion(&self.scales);
+        let force = match &moment.parcel.models.baseline {
+            BaselineModel::Nothing => return None,
+            BaselineModel::Contact(contact) => model_mediated::force(contact, &own),
+            BaselineModel::Wave(wave) => waves::decoded(wave, &own),
+            BaselineModel::Returned { energy_j } => self.controller.step(moment.measured_n, *energy_j, &own),
+            BaselineModel::Trend { force_n, rate_n_s } => {
+                kalman::extrapolated(*force_n, *rate_n_s, moment.age_ticks as f64 * self.period_s)
+            }
+            BaselineModel::Forecast { force_n } => *force_n,
+        };
+        force.is_finite().then_some(force)
+    }
+
+    fn compute(&mut self, before: ModeSet, now: ModeSet) {
+        if now.baseline() != before.baseline() {
+            self.reset();
+        }
+    }
+
+    fn reset(&mut self) {
+        self.controller.reset();
+    }
+}
+
+/// `exp(-1 / memory)`: what a memory of this length (s) keeps over one tick.
+fn kept(memory_s: f64, rate_hz: f64) -> f64 {
+    libm::exp(-1.0 / (memory_s * rate_hz))
+}
